@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every outside library, found and never downloaded. Why each is here: docs/dependencies.md.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
+find_package(NLopt 2.7 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(TBB REQUIRED)
+if(TILTH_BUILD_TESTS)
+  find_package(Catch2 2.13 REQUIRED)
+endif()
+if(TILTH_BUILD_BENCH)
+  find_package(benchmark REQUIRED)
+endif()

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The loop over pairs. Pairs are visited in (i, j) order, so sums never depend on the list's length.
+#pragma once
+
+#include "dem_core/bond_kernel.hpp"
+#include "dem_core/contact_kernel.hpp"
+#include "dem_core/records.hpp"
+
+namespace tilth::lanes {
+
+template <int W>
+struct Body {
+  Pack3<W> position, velocity, spin;
+  TILTH_INLINE static Body load(const double* motion) {
+    return {Pack3<W>::load(motion), Pack3<W>::load(motion + 3 * W),
+            Pack3<W>::load(motion + 6 * W)};
+  }
+};
+
+template <int W>
+TILTH_INLINE void clear_spring(double* spring_m, std::uint8_t& touching) {
+  if (!touching) return;
+  Pack3<W>::zero().store(spring_m);
+  touching = 0;
+}
+
+/// Force on j and the moments of one listed pair, added to both bodies.
+template <int W>
+TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
+                             Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t p) {
+  using P = Pack<W>;
+  const PairRecord& pair = view.pairs[p];
+  const std::int64_t j = pair.j;
+  double* spring_m = view.pair_spring_m + p * 3 * W;
+  const Pack3<W> branch = Pack3<W>::load(view.motion + j * 9 * W) - a.position;
+  const P squared = dot(branch, branch);
+  const bool bonded = pair.bond >= 0;
+  const P reference = P::all(pair.reference_m);
+  Mask<W> touching = squared < reference * reference;
+  double* bond = nullptr;
+  bool any_bond = false;
+  if (bonded) {
+    bond = view.bonds + static_cast<std::int64_t>(pair.bond) * 8 * W;
+    const Mask<W> holds = P::load(bond + 7 * W) > P::all(0.5);
+    any_bond = any(holds);
+    if (!view.contact_beside_bond) touching = touching & !holds;
+  }
+  if (!any_bond && !any(touching)) {
+    clear_spring<W>(spring_m, view.touching[p]);
+    return;
+  }
+  const Pack3<W> velocity_b = Pack3<W>::load(view.motion + j * 9 * W + 3 * W);
+  const Pack3<W> spin_b = Pack3<W>::load(view.motion + j * 9 * W + 6 * W);
+  Encounter<W> e;
+  e.distance = sqrt(squared);
+  e.normal = (P::all(1.0) / e.distance) * branch;
+  const P half = P::all(0.5) * e.distance;
+  const P arm_a = half + P::all(pair.arm_offset_m);
+  const P arm_b = half - P::all(pair.arm_offset_m);
+  const Pack3<W> relative = velocity_b - a.velocity;
+  const P opening_speed = dot(relative, e.normal);
+  e.closing_speed = P::all(0.0) - opening_speed;
+  const Pack3<W> rolling = arm_a * a.spin + arm_b * spin_b;
+  e.sliding_velocity = relative - opening_speed * e.normal - cross(rolling, e.normal);
+
+  P push = P::all(0.0);
+  Pack3<W> tangential = Pack3<W>::zero();
+  Pack3<W> moment = Pack3<W>::zero();
+  if (any(touching)) {
+    const P stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor);
+    const ContactForce<W> f =
+        contact_force(law, law_friction, touching, reference - e.distance, stiffness,
+                      P::all(pair.damping_factor), e, spring_m);
+    push = f.normal;
+    tangential = f.tangential;
+    view.touching[p] = 1;
+  } else {
+    clear_spring<W>(spring_m, view.touching[p]);
+  }
+  if (any_bond) {
+    const BondForce<W> f = bond_force(law, view.bond_geometry[pair.bond], e,
+                                      spin_b - a.spin, a.spin + spin_b, bond, view.num_broken);
+    push = push + f.normal;
+    tangential = tangential + f.tangential;
+    moment = f.moment;
+  }
+  const Pack3<W> on_b = push * e.normal - tangential;
+  const Pack3<W> turning = cross(e.normal, tangential);
+  force_a = force_a - on_b;
+  torque_a = torque_a + (arm_a * turning + moment);
+  double* force_b = view.force + j * 6 * W;
+  (Pack3<W>::load(force_b) + on_b).store(force_b);
+  (Pack3<W>::load(force_b + 3 * W) + (arm_b * turning - moment)).store(force_b + 3 * W);
+}
+
+template <int W>
+TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law) {
+  for (std::int64_t i = 0; i < view.num_particles; ++i) {
+    const std::int64_t begin = view.row_begin[i];
+    const std::int64_t end = view.row_begin[i + 1];
+    if (begin == end) continue;
+    const Body<W> a = Body<W>::load(view.motion + i * 9 * W);
+    double* store = view.force + i * 6 * W;
+    Pack3<W> force = Pack3<W>::load(store);
+    Pack3<W> torque = Pack3<W>::load(store + 3 * W);
+    for (std::int64_t p = begin; p < end; ++p) pair_force(view, law, a, force, torque, p);
+    force.store(store);
+    torque.store(store + 3 * W);
+  }
+}
+
+}  // namespace tilth::lanes

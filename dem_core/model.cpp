@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem_core/model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tilth {
+namespace {
+
+void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& found) {
+  const auto require = [&](bool ok, const char* name, double value, const char* range) {
+    if (!ok) found.push_back(fmt::format("lane {}: {} = {}: must be {}", lane, name, value, range));
+  };
+  const auto finite_from_zero = [](double x) { return std::isfinite(x) && x >= 0; };
+  require(finite_from_zero(law.contact_stiffness), "contact_stiffness", law.contact_stiffness,
+          "finite and >= 0");
+  require(std::isfinite(law.shear_stiffness_ratio) && law.shear_stiffness_ratio > 0,
+          "shear_stiffness_ratio", law.shear_stiffness_ratio, "> 0");
+  require(finite_from_zero(law.friction), "friction", law.friction, "finite and >= 0");
+  require(finite_from_zero(law.wall_friction), "wall_friction", law.wall_friction,
+          "finite and >= 0");
+  require(law.local_damping >= 0 && law.local_damping < 1, "local_damping", law.local_damping,
+          "in [0, 1)");
+  require(std::isfinite(law.dt_s) && law.dt_s > 0, "dt_s", law.dt_s, "> 0");
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const Model& model) {
+  std::vector<std::string> found;
+  const int lanes = model.num_lanes();
+  if (lanes != 1 && lanes != 4 && lanes != 8)
+    found.push_back(fmt::format("num_lanes = {}: must be 1, 4 or 8", lanes));
+  for (std::size_t k = 0; k < model.lanes.size(); ++k) check_lane(model.lanes[k], k, found);
+  if (model.mass_kg.size() != model.radius_m.size())
+    found.push_back(fmt::format("{} masses for {} radii", model.mass_kg.size(),
+                                model.radius_m.size()));
+  const auto bad = [](double x) { return !(std::isfinite(x) && x > 0); };
+  if (std::ranges::any_of(model.radius_m, bad)) found.push_back("a radius_m is not positive");
+  if (std::ranges::any_of(model.mass_kg, bad)) found.push_back("a mass_kg is not positive");
+  const int n = model.num_particles();
+  for (const BondGeometry& b : model.bonds)
+    if (b.i < 0 || b.i >= b.j || b.j >= n) {
+      found.push_back(fmt::format("bond ({}, {}): needs 0 <= i < j < {}", b.i, b.j, n));
+      break;
+    }
+  const auto before = [](const auto& a, const auto& b) {
+    return a.i != b.i ? a.i < b.i : a.j < b.j;
+  };
+  if (!std::ranges::is_sorted(model.bonds, before)) found.push_back("bonds are not sorted by (i, j)");
+  if (!std::ranges::is_sorted(model.references, before))
+    found.push_back("references are not sorted by (i, j)");
+  return found;
+}
+
+std::vector<double> sphere_masses_kg(const std::vector<double>& radius_m,
+                                     double density_kg_per_m3) {
+  std::vector<double> mass_kg(radius_m.size());
+  std::ranges::transform(radius_m, mass_kg.begin(), [=](double r) {
+    return 4.0 / 3.0 * std::numbers::pi * r * r * r * density_kg_per_m3;
+  });
+  return mass_kg;
+}
+
+double damping_number(double restitution) {
+  const double log_e = std::log(restitution);
+  return -2 * log_e / std::sqrt(std::numbers::pi * std::numbers::pi + log_e * log_e);
+}
+
+}  // namespace tilth

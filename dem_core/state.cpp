@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem_core/state.hpp"
+
+namespace tilth {
+namespace {
+
+std::size_t as_size(int k) { return static_cast<std::size_t>(k); }
+
+}  // namespace
+
+Vec3 State::motion_part(int particle, int first, int lane) const {
+  const std::size_t p = pack(particle, 9, first) + at(lane);
+  const std::size_t w = at(num_lanes);
+  return {motion[p], motion[p + w], motion[p + 2 * w]};
+}
+
+void State::set_motion_part(int particle, int first, const Vec3& value) {
+  for (int k = 0; k < 3; ++k)
+    for (int lane = 0; lane < num_lanes; ++lane)
+      motion[pack(particle, 9, first + k) + at(lane)] = value[k];
+}
+
+Vec3 Workspace::wall_force_N(int wall, int lane) const {
+  const std::size_t w = max_speed2_m2_per_s2.size();
+  const std::size_t p = as_size(wall) * 6 * w + as_size(lane);
+  return {wall_force[p], wall_force[p + w], wall_force[p + 2 * w]};
+}
+
+State initial_state(const Model& model, const std::vector<Vec3>& position_m) {
+  State state;
+  const std::size_t w = model.lanes.size();
+  const std::size_t n = position_m.size();
+  state.num_lanes = model.num_lanes();
+  state.motion.assign(n * 9 * w, 0.0);
+  for (int i = 0; i < static_cast<int>(n); ++i) state.set_position_m(i, position_m[as_size(i)]);
+  state.contacts.row_begin.assign(n + 1, 0);
+  state.wall_contacts.row_begin.assign(model.walls.size() + 1, 0);
+  state.bonds.assign(model.bonds.size() * 8 * w, 0.0);
+  for (std::size_t b = 0; b < model.bonds.size(); ++b)
+    for (std::size_t lane = 0; lane < w; ++lane) state.bonds[(b * 8 + 7) * w + lane] = 1.0;
+  state.walls.assign(model.walls.size() * 4 * w, 0.0);
+  for (std::size_t wall = 0; wall < model.walls.size(); ++wall)
+    for (std::size_t lane = 0; lane < w; ++lane) {
+      for (int k = 0; k < 3; ++k)
+        state.walls[(wall * 4 + as_size(k)) * w + lane] = model.walls[wall].position_m[k];
+      state.walls[(wall * 4 + 3) * w + lane] = model.walls[wall].radius_m;
+    }
+  state.drives.assign(model.walls.size() * w, WallDrive{});
+  state.time_s.assign(w, 0.0);
+  state.active.assign(w, 1);
+  return state;
+}
+
+}  // namespace tilth

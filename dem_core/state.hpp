@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run changes: exactly what a restart needs (State), and what can be thrown away (Workspace).
+//
+// Lanes are the innermost index everywhere: entry [k][lane] of a block of packs stands at k * W + lane.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dem_core/aligned.hpp"
+#include "dem_core/model.hpp"
+#include "dem_core/records.hpp"
+
+namespace tilth {
+
+/// How one lane moves one wall.
+struct WallDrive {
+  Vec3 velocity_m_per_s = Vec3::Zero();  ///< used when servo_gain is 0
+  double radial_velocity_m_per_s = 0.0;  ///< cylinders: growth of the radius
+  /// > 0: the plane moves along its normal with gain (target - force), clipped to max_speed, so
+  /// that the compressive force of the specimen on it stays at the target.
+  double servo_gain_m_per_N_s = 0.0;
+  double target_force_N = 0.0;
+  double max_speed_m_per_s = 0.0;
+};
+
+/// Contact memory in CSR form: row i holds partners j > i in ascending order.
+struct ContactMemory {
+  std::vector<std::int32_t> row_begin;  ///< num_particles + 1
+  std::vector<std::int32_t> partner;
+  std::vector<std::uint8_t> touching;  ///< 1 if any lane touched in the last step
+  AlignedDoubles spring_m;             ///< [pair][3][W]: tangential displacement of j against i
+};
+
+/// Wall contacts near enough to matter, sorted by wall, then particle.
+struct WallContactMemory {
+  std::vector<std::int32_t> row_begin;  ///< num_walls + 1
+  std::vector<std::int32_t> particle;
+  AlignedDoubles spring_m;  ///< [contact][3][W]: tangential displacement of the wall's grain
+};
+
+struct State {
+  int num_lanes = 1;
+  /// [particle][9][W]: x y z [m], velocity [m/s], angular velocity [rad/s].
+  AlignedDoubles motion;
+  ContactMemory contacts;
+  WallContactMemory wall_contacts;
+  /// [bond][8][W]: shear force on i (3) [N], bending moment on i (3) [N m], twist moment [N m],
+  /// 1 while the bond holds and 0 after it broke.
+  AlignedDoubles bonds;
+  AlignedDoubles walls;            ///< [wall][4][W]: position (3) [m], cylinder radius [m]
+  std::vector<WallDrive> drives;   ///< [wall][lane]
+  std::vector<double> time_s;      ///< per lane
+  std::vector<std::uint8_t> active;  ///< per lane; a frozen lane keeps its state
+  std::int64_t num_steps = 0;
+
+  Vec3 position_m(int particle, int lane = 0) const { return motion_part(particle, 0, lane); }
+  Vec3 velocity_m_per_s(int particle, int lane = 0) const { return motion_part(particle, 3, lane); }
+  Vec3 angular_velocity_rad_per_s(int particle, int lane = 0) const {
+    return motion_part(particle, 6, lane);
+  }
+  void set_position_m(int particle, const Vec3& x) { set_motion_part(particle, 0, x); }
+  void set_velocity_m_per_s(int particle, const Vec3& v) { set_motion_part(particle, 3, v); }
+  void set_angular_velocity_rad_per_s(int particle, const Vec3& w) {
+    set_motion_part(particle, 6, w);
+  }
+  bool bond_holds(int bond, int lane = 0) const { return bonds[pack(bond, 8, 7) + at(lane)] > 0.5; }
+  Vec3 wall_position_m(int wall, int lane = 0) const {
+    const std::size_t p = pack(wall, 4, 0) + at(lane);
+    const std::size_t w = at(num_lanes);
+    return {walls[p], walls[p + w], walls[p + 2 * w]};
+  }
+  WallDrive& drive(int wall, int lane) { return drives[at(wall * num_lanes + lane)]; }
+
+ private:
+  static std::size_t at(int k) { return static_cast<std::size_t>(k); }
+  std::size_t pack(int item, int packs_per_item, int k) const {
+    return (at(item) * at(packs_per_item) + at(k)) * at(num_lanes);
+  }
+  Vec3 motion_part(int particle, int first, int lane) const;
+  void set_motion_part(int particle, int first, const Vec3& value);  ///< all lanes alike
+};
+
+/// Buffers rebuilt from Model and State whenever needed; see step().
+struct Workspace {
+  bool prepared = false;
+  std::vector<PairRecord> pairs;
+  std::vector<WallRecord> wall_pairs;
+  AlignedDoubles force;                ///< [particle][6][W]: force [N], torque [N m]
+  AlignedDoubles wall_force;           ///< [wall][6][W]: force on the wall, torque about its point
+  AlignedDoubles law;                  ///< lane constants as packs
+  std::vector<double> inverse_mass_per_kg;
+  std::vector<double> inverse_inertia_per_kg_m2;
+  AlignedDoubles max_speed2_m2_per_s2;  ///< [W], of the last step
+  AlignedDoubles num_broken;           ///< [W], bonds broken since the start
+  std::vector<double> moved_m;         ///< per lane: bound on the motion since the list was built
+  std::int64_t num_rebuilds = 0;
+  double skin_m = 0.0;
+
+  Vec3 wall_force_N(int wall, int lane = 0) const;
+};
+
+/// State at rest at the given positions, no contact memory, all bonds holding.
+State initial_state(const Model& model, const std::vector<Vec3>& position_m);
+
+}  // namespace tilth

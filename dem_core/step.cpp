@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dem_core/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dem_core/neighbours.hpp"
+#include "dem_core/view_kernel.hpp"
+
+namespace tilth {
+namespace {
+
+std::size_t as_size(std::int64_t k) { return static_cast<std::size_t>(k); }
+
+void write_law(const Model& model, const State& state, Workspace& workspace) {
+  using namespace lanes;
+  const std::size_t w = model.lanes.size();
+  workspace.law.assign(as_size(num_law_rows) * w, 0.0);
+  for (std::size_t k = 0; k < w; ++k) {
+    const LaneLaw& law = model.lanes[k];
+    const auto put = [&](LawRow row, double value) { workspace.law[as_size(row) * w + k] = value; };
+    const double damping_scale =
+        model.damping_kind == DampingKind::restitution ? std::sqrt(law.contact_stiffness) : 1.0;
+    const bool active = state.active[k] != 0;
+    put(law_contact_stiffness, law.contact_stiffness);
+    put(law_shear_ratio, law.shear_stiffness_ratio);
+    put(law_inverse_shear_ratio, 1 / law.shear_stiffness_ratio);
+    put(law_friction, law.friction);
+    put(law_wall_friction, law.wall_friction);
+    put(law_normal_damping, law.normal_damping * damping_scale);
+    put(law_tangential_damping, law.tangential_damping * damping_scale);
+    put(law_local_damping, law.local_damping);
+    put(law_dt, active ? law.dt_s : 0.0);
+    put(law_bond_normal, law.bond.normal_scale);
+    put(law_bond_shear, law.bond.shear_scale);
+    put(law_bond_bending, law.bond.bending_scale);
+    put(law_bond_twisting, law.bond.twisting_scale);
+    put(law_tensile_limit, law.bond.tensile_limit);
+    put(law_cohesion_limit, law.bond.cohesion_limit);
+    put(law_tan_friction, law.bond.tan_friction);
+    put(law_bending_in_tension, law.bond.bending_in_tension);
+    put(law_twisting_in_shear, law.bond.twisting_in_shear);
+    put(law_active, active ? 1.0 : 0.0);
+  }
+}
+
+void prepare(const Model& model, State& state, Workspace& workspace) {
+  const std::size_t w = model.lanes.size();
+  const std::size_t n = model.radius_m.size();
+  workspace.skin_m = model.skin_m > 0 ? model.skin_m
+                     : n == 0         ? 0.0
+                                      : 0.3 * *std::ranges::min_element(model.radius_m);
+  workspace.force.assign(n * 6 * w, 0.0);
+  workspace.wall_force.assign(model.walls.size() * 6 * w, 0.0);
+  workspace.max_speed2_m2_per_s2.assign(w, 0.0);
+  if (workspace.num_broken.size() != w) workspace.num_broken.assign(w, 0.0);
+  workspace.inverse_mass_per_kg.resize(n);
+  workspace.inverse_inertia_per_kg_m2.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    workspace.inverse_mass_per_kg[i] = 1 / model.mass_kg[i];
+    workspace.inverse_inertia_per_kg_m2[i] =
+        1 / (0.4 * model.mass_kg[i] * model.radius_m[i] * model.radius_m[i]);
+  }
+  write_law(model, state, workspace);
+  rebuild_neighbours(model, state, workspace);
+  workspace.prepared = true;
+}
+
+/// Servo: along the normal with gain (target - force). The specimen pushes against the normal.
+Vec3 drive_velocity(const WallDrive& drive, const Wall& wall, const Vec3& force_on_wall_N) {
+  if (drive.servo_gain_m_per_N_s <= 0) return drive.velocity_m_per_s;
+  const double compression_N = -force_on_wall_N.dot(wall.direction);
+  const double speed = std::clamp(drive.servo_gain_m_per_N_s * (drive.target_force_N - compression_N),
+                                  -drive.max_speed_m_per_s, drive.max_speed_m_per_s);
+  return drive.velocity_m_per_s + speed * wall.direction;
+}
+
+/// Moves every wall of every active lane; returns the wall velocities as packs.
+AlignedDoubles move_walls(const Model& model, State& state, Workspace& workspace) {
+  const std::size_t w = model.lanes.size();
+  AlignedDoubles velocity(model.walls.size() * 4 * w, 0.0);
+  for (std::size_t wall = 0; wall < model.walls.size(); ++wall)
+    for (std::size_t lane = 0; lane < w; ++lane) {
+      if (!state.active[lane]) continue;
+      const WallDrive& drive = state.drives[wall * w + lane];
+      const double dt_s = model.lanes[lane].dt_s;
+      const Vec3 v = drive_velocity(
+          drive, model.walls[wall],
+          workspace.wall_force_N(static_cast<int>(wall), static_cast<int>(lane)));
+      for (std::size_t k = 0; k < 3; ++k) {
+        velocity[(wall * 4 + k) * w + lane] = v[static_cast<Eigen::Index>(k)];
+        state.walls[(wall * 4 + k) * w + lane] += dt_s * v[static_cast<Eigen::Index>(k)];
+      }
+      velocity[(wall * 4 + 3) * w + lane] = drive.radial_velocity_m_per_s;
+      state.walls[(wall * 4 + 3) * w + lane] += dt_s * drive.radial_velocity_m_per_s;
+      const double speed = v.norm() + std::abs(drive.radial_velocity_m_per_s);
+      workspace.moved_m[lane] += dt_s * speed;
+    }
+  return velocity;
+}
+
+/// moved_m bounds the sum of grain and wall motion per lane; only when that bound uses up the skin
+/// are the true displacements looked at.
+bool list_ran_short(const State& state, Workspace& workspace) {
+  double bound = 0.0;
+  for (std::size_t lane = 0; lane < state.active.size(); ++lane)
+    if (state.active[lane]) bound = std::max(bound, workspace.moved_m[lane]);
+  return 2 * bound >= workspace.skin_m;
+}
+
+lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
+                        const std::vector<lanes::WallView>& walls, const double* wall_velocity) {
+  lanes::StepView v{};
+  v.num_particles = model.num_particles();
+  v.num_walls = static_cast<int>(model.walls.size());
+  v.contact_beside_bond = model.contact_beside_bond;
+  v.law = workspace.law.data();
+  v.motion = state.motion.data();
+  v.force = workspace.force.data();
+  v.mass_kg = model.mass_kg.data();
+  v.inverse_mass_per_kg = workspace.inverse_mass_per_kg.data();
+  v.inverse_inertia_per_kg_m2 = workspace.inverse_inertia_per_kg_m2.data();
+  v.radius_m = model.radius_m.data();
+  for (int k = 0; k < 3; ++k) v.gravity_m_per_s2[k] = model.gravity_m_per_s2[k];
+  v.row_begin = state.contacts.row_begin.data();
+  v.pairs = workspace.pairs.data();
+  v.touching = state.contacts.touching.data();
+  v.pair_spring_m = state.contacts.spring_m.data();
+  v.bond_geometry = model.bonds.data();
+  v.bonds = state.bonds.data();
+  v.wall_row_begin = state.wall_contacts.row_begin.data();
+  v.wall_particle = state.wall_contacts.particle.data();
+  v.wall_pairs = workspace.wall_pairs.data();
+  v.wall_spring_m = state.wall_contacts.spring_m.data();
+  v.wall_views = walls.data();
+  v.walls = state.walls.data();
+  v.wall_velocity = wall_velocity;
+  v.wall_force = workspace.wall_force.data();
+  v.max_speed2 = workspace.max_speed2_m2_per_s2.data();
+  v.num_broken = workspace.num_broken.data();
+  return v;
+}
+
+std::vector<lanes::WallView> wall_views(const Model& model) {
+  std::vector<lanes::WallView> views;
+  views.reserve(model.walls.size());
+  for (const Wall& wall : model.walls) {
+    lanes::WallView v{};
+    v.cylinder = wall.shape == WallShape::cylinder;
+    v.bounded = wall.bounded();
+    for (int k = 0; k < 3; ++k) {
+      v.direction[k] = wall.direction[k];
+      v.tangent_a[k] = wall.tangent_a[k];
+      v.tangent_b[k] = wall.tangent_b[k];
+    }
+    v.half_a_m = wall.half_a_m;
+    v.half_b_m = wall.half_b_m;
+    views.push_back(v);
+  }
+  return views;
+}
+
+void dispatch(const lanes::StepView& view, int num_lanes) {
+  if (!lanes_supported(num_lanes))
+    throw std::invalid_argument("this processor cannot run that many lanes; see widest_lanes()");
+  if (num_lanes == 1) lanes::step_lanes<1>(view);
+  if (num_lanes == 4) lanes::step_lanes<4>(view);
+  if (num_lanes == 8) lanes::step_lanes<8>(view);
+}
+
+/// Books time and motion of every active lane; freezes those that ran away.
+void close_step(const Model& model, State& state, Workspace& workspace, StepInfo& info) {
+  const double limit_m = 0.25 * *std::ranges::min_element(model.radius_m);
+  info.any_active = false;
+  for (std::size_t lane = 0; lane < state.active.size(); ++lane) {
+    if (!state.active[lane]) continue;
+    const double dt_s = model.lanes[lane].dt_s;
+    const double moved_m = dt_s * std::sqrt(workspace.max_speed2_m2_per_s2[lane]);
+    state.time_s[lane] += dt_s;
+    workspace.moved_m[lane] += moved_m;
+    if (moved_m < limit_m) {
+      info.any_active = true;
+      continue;
+    }
+    state.active[lane] = 0;
+    info.lane_failed = true;
+    model_changed(workspace);
+  }
+  ++state.num_steps;
+}
+
+}  // namespace
+
+void model_changed(Workspace& workspace) { workspace.prepared = false; }
+
+int widest_lanes() {
+  if (__builtin_cpu_supports("avx512f")) return 8;
+  if (__builtin_cpu_supports("avx2")) return 4;
+  return 1;
+}
+
+bool lanes_supported(int num_lanes) {
+  return num_lanes == 1 || ((num_lanes == 4 || num_lanes == 8) && num_lanes <= widest_lanes());
+}
+
+StepInfo step(const Model& model, State& state, Workspace& workspace) {
+  StepInfo info;
+  if (!workspace.prepared) prepare(model, state, workspace);
+  const AlignedDoubles wall_velocity = move_walls(model, state, workspace);
+  if (list_ran_short(state, workspace)) {
+    rebuild_neighbours(model, state, workspace);
+    info.rebuilt = true;
+  }
+  const std::vector<lanes::WallView> walls = wall_views(model);
+  dispatch(view_of(model, state, workspace, walls, wall_velocity.data()), model.num_lanes());
+  close_step(model, state, workspace, info);
+  return info;
+}
+
+}  // namespace tilth

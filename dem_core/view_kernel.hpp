@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Raw pointers into Model, State and Workspace for the kernels. Private to dem_core.
+//
+// The kernels are compiled once per instruction set; only plain pointers cross that border, so that
+// no inline function of the standard library is ever emitted with instructions the processor lacks.
+#pragma once
+
+#include <cstdint>
+
+namespace tilth {
+struct PairRecord;
+struct WallRecord;
+struct BondGeometry;
+}  // namespace tilth
+
+namespace tilth::lanes {
+
+/// Rows of the lane-constant block, each W doubles.
+enum LawRow : int {
+  law_contact_stiffness,
+  law_shear_ratio,
+  law_inverse_shear_ratio,
+  law_friction,
+  law_wall_friction,
+  law_normal_damping,
+  law_tangential_damping,
+  law_local_damping,
+  law_dt,
+  law_bond_normal,
+  law_bond_shear,
+  law_bond_bending,
+  law_bond_twisting,
+  law_tensile_limit,
+  law_cohesion_limit,
+  law_tan_friction,
+  law_bending_in_tension,
+  law_twisting_in_shear,
+  law_active,
+  num_law_rows
+};
+
+/// One wall as the kernel sees it.
+struct WallView {
+  bool cylinder;
+  bool bounded;
+  double direction[3];
+  double tangent_a[3];
+  double tangent_b[3];
+  double half_a_m;
+  double half_b_m;
+};
+
+struct StepView {
+  int num_particles;
+  int num_walls;
+  bool contact_beside_bond;
+  const double* law;
+  double* motion;
+  double* force;
+  const double* mass_kg;
+  const double* inverse_mass_per_kg;
+  const double* inverse_inertia_per_kg_m2;
+  const double* radius_m;
+  double gravity_m_per_s2[3];
+  const std::int32_t* row_begin;
+  const PairRecord* pairs;
+  std::uint8_t* touching;
+  double* pair_spring_m;
+  const BondGeometry* bond_geometry;
+  double* bonds;
+  const std::int32_t* wall_row_begin;
+  const std::int32_t* wall_particle;
+  const WallRecord* wall_pairs;
+  double* wall_spring_m;
+  const WallView* wall_views;
+  const double* walls;          ///< [wall][4][W]
+  const double* wall_velocity;  ///< [wall][4][W]: velocity (3), growth of the radius
+  double* wall_force;           ///< [wall][6][W]
+  double* max_speed2;           ///< [W]
+  double* num_broken;           ///< [W]
+};
+
+/// Forces of all pairs, bonds and walls, then one semi-implicit Euler step of every active lane.
+template <int W>
+void step_lanes(const StepView& view);
+
+extern template void step_lanes<1>(const StepView&);
+extern template void step_lanes<4>(const StepView&);
+extern template void step_lanes<8>(const StepView&);
+
+}  // namespace tilth::lanes

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Distance from a point to a wall, one lane; the same formulas as the kernel's.
+#pragma once
+
+#include "dem_core/state.hpp"
+
+namespace tilth {
+
+/// Signed distance to the wall as placed in `lane`: planes positive on the normal's side, bounded
+/// planes the distance to the nearest point of the rectangle, cylinders R minus the axial distance.
+double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
+                       int lane = 0);
+
+}  // namespace tilth
