@@ -172,7 +172,8 @@ void dispatch(const lanes::StepView& view, int num_lanes) {
 
 /// Books time and motion of every active lane; freezes those that ran away.
 void close_step(const Model& model, State& state, Workspace& workspace, StepInfo& info) {
-  const double limit_m = 0.25 * *std::ranges::min_element(model.radius_m);
+  const double limit_m =
+      model.radius_m.empty() ? 0.0 : 0.25 * *std::ranges::min_element(model.radius_m);
   info.any_active = false;
   for (std::size_t lane = 0; lane < state.active.size(); ++lane) {
     if (!state.active[lane]) continue;
