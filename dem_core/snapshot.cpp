@@ -28,6 +28,7 @@ void for_each_array(StateRef& s, Visit visit) {
   visit(s.wall_contacts.spring_m);
   visit(s.bonds);
   visit(s.walls);
+  visit(s.wall_force);
   visit(s.time_s);
   visit(s.active);
 }

@@ -21,9 +21,9 @@ void State::set_motion_part(int particle, int first, const Vec3& value) {
       motion[pack(particle, 9, first + k) + at(lane)] = value[k];
 }
 
-Vec3 Workspace::wall_force_N(int wall, int lane) const {
-  const std::size_t w = max_speed2_m2_per_s2.size();
-  const std::size_t p = as_size(wall) * 6 * w + as_size(lane);
+Vec3 State::wall_part(int wall, int first, int lane) const {
+  const std::size_t p = pack(wall, 6, first) + at(lane);
+  const std::size_t w = at(num_lanes);
   return {wall_force[p], wall_force[p + w], wall_force[p + 2 * w]};
 }
 
@@ -46,6 +46,7 @@ State initial_state(const Model& model, const std::vector<Vec3>& position_m) {
         state.walls[(wall * 4 + as_size(k)) * w + lane] = model.walls[wall].position_m[k];
       state.walls[(wall * 4 + 3) * w + lane] = model.walls[wall].radius_m;
     }
+  state.wall_force.assign(model.walls.size() * 6 * w, 0.0);
   state.drives.assign(model.walls.size() * w, WallDrive{});
   state.time_s.assign(w, 0.0);
   state.active.assign(w, 1);

@@ -50,6 +50,8 @@ struct State {
   /// 1 while the bond holds and 0 after it broke.
   AlignedDoubles bonds;
   AlignedDoubles walls;            ///< [wall][4][W]: position (3) [m], cylinder radius [m]
+  /// [wall][6][W]: force on the wall and torque about its point in the last step (servos read it).
+  AlignedDoubles wall_force;
   std::vector<WallDrive> drives;   ///< [wall][lane]
   std::vector<double> time_s;      ///< per lane
   std::vector<std::uint8_t> active;  ///< per lane; a frozen lane keeps its state
@@ -71,6 +73,10 @@ struct State {
     const std::size_t w = at(num_lanes);
     return {walls[p], walls[p + w], walls[p + 2 * w]};
   }
+  /// Force of the specimen on the wall in the last step.
+  Vec3 wall_force_N(int wall, int lane = 0) const { return wall_part(wall, 0, lane); }
+  /// Torque of the specimen on the wall about the wall's point in the last step.
+  Vec3 wall_torque_N_m(int wall, int lane = 0) const { return wall_part(wall, 3, lane); }
   WallDrive& drive(int wall, int lane) { return drives[at(wall * num_lanes + lane)]; }
 
  private:
@@ -79,6 +85,7 @@ struct State {
     return (at(item) * at(packs_per_item) + at(k)) * at(num_lanes);
   }
   Vec3 motion_part(int particle, int first, int lane) const;
+  Vec3 wall_part(int wall, int first, int lane) const;
   void set_motion_part(int particle, int first, const Vec3& value);  ///< all lanes alike
 };
 
@@ -88,7 +95,6 @@ struct Workspace {
   std::vector<PairRecord> pairs;
   std::vector<WallRecord> wall_pairs;
   AlignedDoubles force;                ///< [particle][6][W]: force [N], torque [N m]
-  AlignedDoubles wall_force;           ///< [wall][6][W]: force on the wall, torque about its point
   AlignedDoubles law;                  ///< lane constants as packs
   std::vector<double> inverse_mass_per_kg;
   std::vector<double> inverse_inertia_per_kg_m2;
@@ -98,7 +104,6 @@ struct Workspace {
   std::int64_t num_rebuilds = 0;
   double skin_m = 0.0;
 
-  Vec3 wall_force_N(int wall, int lane = 0) const;
 };
 
 /// State at rest at the given positions, no contact memory, all bonds holding.

@@ -53,7 +53,6 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
                      : n == 0         ? 0.0
                                       : 0.3 * *std::ranges::min_element(model.radius_m);
   workspace.force.assign(n * 6 * w, 0.0);
-  workspace.wall_force.assign(model.walls.size() * 6 * w, 0.0);
   workspace.max_speed2_m2_per_s2.assign(w, 0.0);
   if (workspace.num_broken.size() != w) workspace.num_broken.assign(w, 0.0);
   workspace.inverse_mass_per_kg.resize(n);
@@ -88,7 +87,7 @@ AlignedDoubles move_walls(const Model& model, State& state, Workspace& workspace
       const double dt_s = model.lanes[lane].dt_s;
       const Vec3 v = drive_velocity(
           drive, model.walls[wall],
-          workspace.wall_force_N(static_cast<int>(wall), static_cast<int>(lane)));
+          state.wall_force_N(static_cast<int>(wall), static_cast<int>(lane)));
       for (std::size_t k = 0; k < 3; ++k) {
         velocity[(wall * 4 + k) * w + lane] = v[static_cast<Eigen::Index>(k)];
         state.walls[(wall * 4 + k) * w + lane] += dt_s * v[static_cast<Eigen::Index>(k)];
@@ -137,7 +136,7 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.wall_views = walls.data();
   v.walls = state.walls.data();
   v.wall_velocity = wall_velocity;
-  v.wall_force = workspace.wall_force.data();
+  v.wall_force = state.wall_force.data();
   v.max_speed2 = workspace.max_speed2_m2_per_s2.data();
   v.num_broken = workspace.num_broken.data();
   return v;
