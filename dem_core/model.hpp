@@ -50,11 +50,12 @@ struct Wall {
   Vec3 position_m = Vec3::Zero();  ///< a point of the plane or of the axis at the start
   double radius_m = 0.0;           ///< cylinder only, at the start
   /// A plane may be bounded to a rectangle: |(x - position) . tangent_a| <= half_a, same for b.
-  /// Outside it a grain meets the rectangle's edge.
+  /// Outside it a grain meets the rectangle's edge, or nothing where has_edges is false.
   Vec3 tangent_a = Vec3::UnitX();
   Vec3 tangent_b = Vec3::UnitY();
   double half_a_m = std::numeric_limits<double>::infinity();
   double half_b_m = std::numeric_limits<double>::infinity();
+  bool has_edges = true;
 
   bool bounded() const {
     return half_a_m < std::numeric_limits<double>::infinity() ||

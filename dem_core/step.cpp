@@ -149,6 +149,7 @@ std::vector<lanes::WallView> wall_views(const Model& model) {
     lanes::WallView v{};
     v.cylinder = wall.shape == WallShape::cylinder;
     v.bounded = wall.bounded();
+    v.has_edges = wall.has_edges;
     for (int k = 0; k < 3; ++k) {
       v.direction[k] = wall.direction[k];
       v.tangent_a[k] = wall.tangent_a[k];

@@ -44,6 +44,7 @@ enum LawRow : int {
 struct WallView {
   bool cylinder;
   bool bounded;
+  bool has_edges;
   double direction[3];
   double tangent_a[3];
   double tangent_b[3];

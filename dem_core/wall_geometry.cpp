@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tilth {
 
@@ -24,6 +25,7 @@ double wall_distance_m(const Model& model, const State& state, int wall, const V
   const double da = beyond(offset.dot(w.tangent_a), w.half_a_m);
   const double db = beyond(offset.dot(w.tangent_b), w.half_b_m);
   if (da == 0 && db == 0) return along;
+  if (!w.has_edges) return std::numeric_limits<double>::infinity();
   return std::sqrt(along * along + da * da + db * db);
 }
 

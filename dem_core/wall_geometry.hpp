@@ -8,7 +8,8 @@
 namespace tilth {
 
 /// Signed distance to the wall as placed in `lane`: planes positive on the normal's side, bounded
-/// planes the distance to the nearest point of the rectangle, cylinders R minus the axial distance.
+/// planes the distance to the nearest point of the rectangle (infinite beside one without edges),
+/// cylinders R minus the axial distance.
 double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
                        int lane = 0);
 

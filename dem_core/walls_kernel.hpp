@@ -51,6 +51,7 @@ TILTH_INLINE WallMeeting<W> meet_wall(const WallView& wall, const double* place,
   const P outside2 = da * da + db * db;
   const P zero = P::all(0.0);
   const Mask<W> at_edge = outside2 > zero;
+  if (!wall.has_edges) return {select(at_edge, P::all(1e300), along), direction};
   const P edge_distance = sqrt(select(at_edge, outside2 + along * along, P::all(1.0)));
   const P inverse = P::all(1.0) / edge_distance;
   const Pack3<W> from_edge =
