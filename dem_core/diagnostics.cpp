@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dem_core/diagnostics.hpp"
 
+#include <Eigen/Geometry>
+
 #include "dem_core/wall_geometry.hpp"
 
 namespace tilth {
@@ -114,6 +116,13 @@ double coordination(const Model& model, const State& state, int lane) {
       const double reach = model.radius_m[as_size(i)] + model.radius_m[as_size(j)];
       touching += (state.position_m(j, lane) - state.position_m(i, lane)).norm() < reach ? 1 : 0;
     }
+  for (std::size_t b = 0; b < model.bonds.size(); ++b) {
+    const BondGeometry& bond = model.bonds[b];
+    const double reach = model.radius_m[as_size(bond.i)] + model.radius_m[as_size(bond.j)];
+    const bool apart =
+        (state.position_m(bond.j, lane) - state.position_m(bond.i, lane)).norm() >= reach;
+    touching += apart && state.bond_holds(static_cast<int>(b), lane) ? 1 : 0;
+  }
   return 2.0 * static_cast<double>(touching) / std::max(1, model.num_particles());
 }
 

@@ -23,6 +23,15 @@ void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& 
   require(finite_from_zero(law.friction), "friction", law.friction, "finite and >= 0");
   require(finite_from_zero(law.wall_friction), "wall_friction", law.wall_friction,
           "finite and >= 0");
+  require(finite_from_zero(law.normal_damping), "normal_damping", law.normal_damping,
+          "finite and >= 0");
+  require(finite_from_zero(law.tangential_damping), "tangential_damping", law.tangential_damping,
+          "finite and >= 0");
+  const BondLaw& b = law.bond;
+  for (const double x : {b.normal_scale, b.shear_scale, b.bending_scale, b.twisting_scale,
+                         b.tensile_limit, b.cohesion_limit, b.tan_friction, b.bending_in_tension,
+                         b.twisting_in_shear})
+    require(finite_from_zero(x), "a constant of bond", x, "finite and >= 0");
   require(law.local_damping >= 0 && law.local_damping < 1, "local_damping", law.local_damping,
           "in [0, 1)");
   require(std::isfinite(law.dt_s) && law.dt_s > 0, "dt_s", law.dt_s, "> 0");
@@ -48,6 +57,9 @@ std::vector<std::string> problems(const Model& model) {
       found.push_back(fmt::format("bond ({}, {}): needs 0 <= i < j < {}", b.i, b.j, n));
       break;
     }
+  for (std::size_t w = 0; w < model.walls.size(); ++w)
+    if (!(std::abs(model.walls[w].direction.norm() - 1) < 1e-9))
+      found.push_back(fmt::format("wall {}: direction must be a unit vector", w));
   const auto before = [](const auto& a, const auto& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   };

@@ -40,7 +40,8 @@ struct Grid {
     Vec3 half = 4 * (variance / n).cwiseSqrt() + Vec3::Constant(reach_m);
     low = mean - half;
     for (int k = 0; k < 3; ++k) {
-      const double cells = std::clamp(std::floor(2 * half[k] / reach_m), 1.0, 128.0);
+      // fmax and fmin answer NaN (a diverged lane) with the bound
+      const double cells = std::fmin(std::fmax(std::floor(2 * half[k] / reach_m), 1.0), 128.0);
       size[as_size(k)] = static_cast<Index>(cells);
       inverse_width_per_m[k] = cells / (2 * half[k]);
     }
@@ -105,6 +106,10 @@ struct Rows {
 
   Rows(const Model& model, const State& state, double skin_m) : partners(model.radius_m.size()) {
     for (const BondGeometry& b : model.bonds) partners[as_size(b.i)].push_back(b.j);
+    // a reference distance may exceed the radii: such pairs are always listed
+    for (const ReferenceDistance& r : model.references)
+      if (r.distance_m > model.radius_m[as_size(r.i)] + model.radius_m[as_size(r.j)])
+        partners[as_size(r.i)].push_back(r.j);
     for (int lane = 0; lane < state.num_lanes; ++lane)
       if (state.active[as_size(lane)]) add_lane(model, state, skin_m, lane);
     for (auto& row : partners) {

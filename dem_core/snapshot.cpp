@@ -77,6 +77,7 @@ State read_state(std::istream& in) {
     in.read(reinterpret_cast<char*>(array.data()), static_cast<std::streamsize>(n * sizeof(T)));
     if (!in) throw std::runtime_error("ends early");
   });
+  if (in.peek() != std::istream::traits_type::eof()) throw std::runtime_error("is damaged");
   return state;
 }
 

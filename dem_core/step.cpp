@@ -192,12 +192,22 @@ void close_step(const Model& model, State& state, Workspace& workspace, StepInfo
   ++state.num_steps;
 }
 
+/// The kernel computes all lanes; a frozen one keeps the wall forces it had.
+void restore_frozen(const AlignedDoubles& before, State& state) {
+  const std::size_t w = state.active.size();
+  for (std::size_t k = 0; k < before.size(); ++k)
+    if (!state.active[k % w]) state.wall_force[k] = before[k];
+}
+
 }  // namespace
 
 void model_changed(Workspace& workspace) { workspace.prepared = false; }
 
 int widest_lanes() {
-  if (__builtin_cpu_supports("avx512f")) return 8;
+  // what step_w8.cpp is compiled for
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl"))
+    return 8;
   if (__builtin_cpu_supports("avx2")) return 4;
   return 1;
 }
@@ -215,7 +225,10 @@ StepInfo step(const Model& model, State& state, Workspace& workspace) {
     info.rebuilt = true;
   }
   const std::vector<lanes::WallView> walls = wall_views(model);
+  const bool any_frozen = std::ranges::find(state.active, 0) != state.active.end();
+  const AlignedDoubles wall_force = any_frozen ? state.wall_force : AlignedDoubles{};
   dispatch(view_of(model, state, workspace, walls, wall_velocity.data()), model.num_lanes());
+  restore_frozen(wall_force, state);
   close_step(model, state, workspace, info);
   return info;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -23,6 +24,14 @@ struct PairStiffness {
   double normal = 0.0, shear = 0.0, bending = 0.0, twisting = 0.0;
 };
 
+/// What one contact adds: springs, and dashpots as if they were springs.
+struct ContactMatrices {
+  PairStiffness springs, dashpots;
+};
+
+/// Sums over the contacts of one grain; Load[0] of springs, Load[1] of dashpots.
+using Load = std::array<Matrix6, 2>;
+
 /// Stiffness of a pair as seen from one body: (u + arm theta x n) in D, theta in bending/twist.
 Matrix6 one_sided(const PairStiffness& k, const Vec3& n, double arm_m) {
   const Mat3 along = n * n.transpose();
@@ -37,64 +46,90 @@ Matrix6 one_sided(const PairStiffness& k, const Vec3& n, double arm_m) {
   return stiffness;
 }
 
-PairStiffness contact_stiffness(const Model& model, const LaneLaw& law, double ri, double rj) {
+ContactMatrices contact_matrices(const Model& model, const LaneLaw& law, double factor,
+                                 double effective_mass_kg) {
+  const double kn = law.contact_stiffness * factor;
+  const double c = model.damping_kind == DampingKind::rate ? effective_mass_kg
+                                                           : std::sqrt(effective_mass_kg * kn);
+  return {.springs = {.normal = kn, .shear = kn * law.shear_stiffness_ratio},
+          .dashpots = {.normal = c * law.normal_damping, .shear = c * law.tangential_damping}};
+}
+
+ContactMatrices pair_matrices(const Model& model, const LaneLaw& law, int i, int j) {
+  const double ri = model.radius_m[as_size(i)];
+  const double rj = model.radius_m[as_size(j)];
+  const double mi = model.mass_kg[as_size(i)];
+  const double mj = model.mass_kg[as_size(j)];
   const double r = std::min(ri, rj);
   const double factor = model.stiffness_kind == StiffnessKind::modulus
                             ? std::numbers::pi * r * r / (ri + rj)
                             : 1.0;
-  const double kn = law.contact_stiffness * factor;
-  return {.normal = kn, .shear = kn * law.shear_stiffness_ratio};
+  return contact_matrices(model, law, factor, mi * mj / (mi + mj));
 }
 
-void add_pair(const State& state, std::vector<Matrix6>& sum, int i, int j, double ri, double rj,
-              const PairStiffness& k, int lane) {
+void add_pair(const Model& model, const State& state, std::vector<Load>& sum, int i, int j,
+              const PairStiffness& k, std::size_t kind, int lane) {
+  const double ri = model.radius_m[as_size(i)];
+  const double rj = model.radius_m[as_size(j)];
   const Vec3 branch = state.position_m(j, lane) - state.position_m(i, lane);
   const double distance = branch.norm();
   const Vec3 n = branch / distance;
-  sum[as_size(i)] += 2 * one_sided(k, n, 0.5 * (distance + ri - rj));
-  sum[as_size(j)] += 2 * one_sided(k, n, -0.5 * (distance + rj - ri));
+  sum[as_size(i)][kind] += 2 * one_sided(k, n, 0.5 * (distance + ri - rj));
+  sum[as_size(j)][kind] += 2 * one_sided(k, n, -0.5 * (distance + rj - ri));
+}
+
+void add_walls(const Model& model, const State& state, std::vector<Load>& sum, int i, int lane) {
+  const double r = model.radius_m[as_size(i)];
+  const Vec3 x = state.position_m(i, lane);
+  const double factor = model.stiffness_kind == StiffnessKind::modulus ? std::numbers::pi * r : 1.0;
+  const ContactMatrices k =
+      contact_matrices(model, model.lanes[as_size(lane)], factor, model.mass_kg[as_size(i)]);
+  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
+    const double distance = wall_distance_m(model, state, w, x, lane);
+    if (distance > 1.02 * r) continue;
+    const Vec3 n = wall_normal(model, state, w, x, lane);
+    sum[as_size(i)][0] += one_sided(k.springs, n, distance);
+    sum[as_size(i)][1] += one_sided(k.dashpots, n, distance);
+  }
+}
+
+/// Largest eigenvalue of M^-1/2 k M^-1/2 of one grain.
+double largest_eigenvalue(const Matrix6& k, double mass_kg, double radius_m) {
+  Eigen::Matrix<double, 6, 1> scale;
+  scale << Vec3::Constant(1 / std::sqrt(mass_kg)),
+      Vec3::Constant(1 / std::sqrt(0.4 * mass_kg * radius_m * radius_m));
+  const Matrix6 scaled = scale.asDiagonal() * k * scale.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<Matrix6>(scaled, Eigen::EigenvaluesOnly).eigenvalues()[5];
 }
 
 }  // namespace
 
 double stable_time_step_s(const Model& model, const State& state, int lane) {
   const LaneLaw& law = model.lanes[as_size(lane)];
-  std::vector<Matrix6> sum(model.radius_m.size(), Matrix6::Zero());
+  std::vector<Load> sum(model.radius_m.size(), Load{Matrix6::Zero(), Matrix6::Zero()});
   const double r_max =
       model.radius_m.empty() ? 0.0 : *std::ranges::max_element(model.radius_m);
   for (const ReferenceDistance& p : pairs_within(model, state, 0.04 * r_max, lane)) {
-    const double ri = model.radius_m[as_size(p.i)];
-    const double rj = model.radius_m[as_size(p.j)];
-    add_pair(state, sum, p.i, p.j, ri, rj, contact_stiffness(model, law, ri, rj), lane);
+    const ContactMatrices k = pair_matrices(model, law, p.i, p.j);
+    add_pair(model, state, sum, p.i, p.j, k.springs, 0, lane);
+    add_pair(model, state, sum, p.i, p.j, k.dashpots, 1, lane);
   }
   for (const BondGeometry& b : model.bonds)
-    add_pair(state, sum, b.i, b.j, model.radius_m[as_size(b.i)], model.radius_m[as_size(b.j)],
+    add_pair(model, state, sum, b.i, b.j,
              {law.bond.normal_scale * b.normal_factor, law.bond.shear_scale * b.shear_factor,
               law.bond.bending_scale * b.bending_factor,
               law.bond.twisting_scale * b.twisting_factor},
-             lane);
-  double omega2 = 0.0;
+             0, lane);
+  double dt_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < model.num_particles(); ++i) {
-    const double r = model.radius_m[as_size(i)];
-    for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
-      if (wall_distance_m(model, state, w, state.position_m(i, lane), lane) > 1.02 * r) continue;
-      const double factor =
-          model.stiffness_kind == StiffnessKind::modulus ? std::numbers::pi * r : 1.0;
-      const double kn = law.contact_stiffness * factor;
-      sum[as_size(i)] += one_sided({.normal = kn, .shear = kn * law.shear_stiffness_ratio},
-                                   model.walls[as_size(w)].direction, r);
-    }
+    add_walls(model, state, sum, i, lane);
     const double m = model.mass_kg[as_size(i)];
-    Eigen::Matrix<double, 6, 1> scale;
-    scale << Vec3::Constant(1 / std::sqrt(m)), Vec3::Constant(1 / std::sqrt(0.4 * m * r * r));
-    const Matrix6 k = scale.asDiagonal() * sum[as_size(i)] * scale.asDiagonal();
-    omega2 = std::max(omega2, Eigen::SelfAdjointEigenSolver<Matrix6>(k, Eigen::EigenvaluesOnly)
-                                  .eigenvalues()[5]);
+    const double r = model.radius_m[as_size(i)];
+    const double k = largest_eigenvalue(sum[as_size(i)][0], m, r);
+    const double c = largest_eigenvalue(sum[as_size(i)][1], m, r);
+    if (k > 0 || c > 0) dt_s = std::min(dt_s, 4 / (c + std::sqrt(c * c + 4 * k)));
   }
-  if (omega2 <= 0) return std::numeric_limits<double>::infinity();
-  const double zeta =
-      model.damping_kind == DampingKind::restitution ? 0.5 * law.normal_damping : 0.0;
-  return 2 / std::sqrt(omega2) * (std::sqrt(1 + zeta * zeta) - zeta);
+  return dt_s;
 }
 
 double ladder_time_step_s(double dt_s) {

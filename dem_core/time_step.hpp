@@ -8,11 +8,12 @@
 namespace tilth {
 
 /// Largest step for which semi-implicit Euler is stable on the linearised assembly:
-///   dt = 2 / omega,   omega^2 = max_i lambda_max( M_i^-1/2 (2 sum_j K_ij + sum_w K_iw) M_i^-1/2 )
-/// with the 6x6 stiffness K_ij of every contact and bond as seen from grain i alone. It bounds the
-/// true highest frequency from above because x'Kx = sum |B_i x_i - B_j x_j|^2_D
-/// <= 2 sum (|B_i x_i|^2_D + |B_j x_j|^2_D). A normal dashpot of ratio zeta shortens it by
-/// sqrt(1 + zeta^2) - zeta. Pairs within 2 % of their reference distance count as touching.
+///   dt = min_i 4 / (c_i + sqrt(c_i^2 + 4 k_i)),    2 / sqrt(max k_i) without dashpots,
+///   k_i = lambda_max( M_i^-1/2 (2 sum_j K_ij + sum_w K_iw) M_i^-1/2 ),   c_i the same of dashpots
+/// with the 6x6 stiffness K_ij of every contact and bond as seen from grain i alone. It is never
+/// above the limit of the assembled system because x'Kx = sum |B_i x_i - B_j x_j|^2_D
+/// <= 2 sum (|B_i x_i|^2_D + |B_j x_j|^2_D), and the same of the dashpots. Pairs closer than 1.02
+/// times their radii count as touching.
 /// @return dt [s]; infinity when nothing touches
 /// @source own derivation, docs/theory/time_step.md
 double stable_time_step_s(const Model& model, const State& state, int lane = 0);

@@ -8,6 +8,12 @@
 
 namespace tilth {
 
+namespace {
+
+double beyond(double x, double half) { return x - std::clamp(x, -half, half); }
+
+}  // namespace
+
 double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
                        int lane) {
   const Wall& w = model.walls[static_cast<std::size_t>(wall)];
@@ -21,12 +27,23 @@ double wall_distance_m(const Model& model, const State& state, int wall, const V
     return radius_m - (offset - along * w.direction).norm();
   }
   if (!w.bounded()) return along;
-  const auto beyond = [](double x, double half) { return x - std::clamp(x, -half, half); };
   const double da = beyond(offset.dot(w.tangent_a), w.half_a_m);
   const double db = beyond(offset.dot(w.tangent_b), w.half_b_m);
   if (da == 0 && db == 0) return along;
   if (!w.has_edges) return std::numeric_limits<double>::infinity();
   return std::sqrt(along * along + da * da + db * db);
+}
+
+Vec3 wall_normal(const Model& model, const State& state, int wall, const Vec3& point_m, int lane) {
+  const Wall& w = model.walls[static_cast<std::size_t>(wall)];
+  const Vec3 offset = point_m - state.wall_position_m(wall, lane);
+  const double along = offset.dot(w.direction);
+  if (w.shape == WallShape::cylinder) return (along * w.direction - offset).normalized();
+  if (!w.bounded()) return w.direction;
+  const double da = beyond(offset.dot(w.tangent_a), w.half_a_m);
+  const double db = beyond(offset.dot(w.tangent_b), w.half_b_m);
+  if (da == 0 && db == 0) return w.direction;
+  return (along * w.direction + da * w.tangent_a + db * w.tangent_b).normalized();
 }
 
 }  // namespace tilth

@@ -13,4 +13,9 @@ namespace tilth {
 double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
                        int lane = 0);
 
+/// Unit vector along which the wall pushes a grain at the point: towards the axis of a cylinder, away
+/// from the nearest point of a rectangle.
+Vec3 wall_normal(const Model& model, const State& state, int wall, const Vec3& point_m,
+                 int lane = 0);
+
 }  // namespace tilth

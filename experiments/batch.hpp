@@ -14,10 +14,14 @@
 
 namespace tilth {
 
+/// Calls body(k) once for every k in [0, n), in any order and on any thread.
+using ForEach = std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)>;
+
 /// How a batch is run; nothing here changes a result.
 struct RunOptions {
   int max_lanes = 0;                          ///< 1, 4 or 8; 0 takes what the processor offers
   const std::atomic<bool>* stop = nullptr;    ///< set to end early: results become `stopped`
+  ForEach for_each;                           ///< runs packs side by side; empty: one by one
 };
 
 /// Lane counts that cover n members on a machine of `widest` lanes: full packs of the widest, then
@@ -28,8 +32,7 @@ std::vector<int> pack_widths(int n, int widest);
 using PackRunner =
     std::function<std::vector<ExperimentResult>(std::span<const std::size_t> task_of_lane)>;
 
-/// Cuts tasks into packs, fills spare lanes with the pack's first task, runs the packs one after the
-/// other, and gives the results in the tasks' order. Lanes of a pack share grain masses, so only
+/// Cuts tasks into packs, fills spare lanes with the pack's first task, runs the packs, and gives the results in the tasks' order. Lanes of a pack share grain masses, so only
 /// tasks of one density go together; that, and nothing else, decides the packs.
 std::vector<ExperimentResult> run_in_packs(std::span<const double> density_of_task,
                                            const RunOptions& options, const PackRunner& run);

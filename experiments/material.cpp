@@ -8,7 +8,7 @@ namespace tilth {
 
 std::vector<Field> fields(SoilMaterial& m) {
   return {{"contact_modulus_Pa", &m.contact_modulus_Pa, 1e2, 1e12},
-          {"contact_stiffness_ratio", &m.contact_stiffness_ratio, 0.1, 100},
+          {"stiffness_ratio", &m.contact_stiffness_ratio, 0.1, 100},
           {"friction", &m.friction, 0, 10},
           {"wall_friction", &m.wall_friction, 0, 10},
           {"bond_modulus_Pa", &m.bond.modulus_Pa, 0, 1e12},
@@ -19,7 +19,7 @@ std::vector<Field> fields(SoilMaterial& m) {
           {"bond_radius_multiplier", &m.bond.radius_multiplier, 0.05, 2},
           {"moment_contribution", &m.bond.moment_contribution, 0, 1},
           {"local_damping", &m.local_damping, 0, 0.95},
-          {"density_kg_per_m3", &m.density_kg_per_m3, 10, 20000}};
+          {"grain_density_kg_per_m3", &m.density_kg_per_m3, 10, 20000}};
 }
 
 std::vector<std::string> problems(const SoilMaterial& material) {

@@ -15,8 +15,8 @@ struct SoilMaterial {
   double friction = 0.5;                ///< Coulomb coefficient between grains
   double wall_friction = 0.0;           ///< on platens and boxes: polished and greased
   BondMaterial bond{.modulus_Pa = 2e6, .tensile_strength_Pa = 20e3, .cohesion_Pa = 20e3};
-  double local_damping = 0.5;           ///< quasi-static tests; alpha of Cundall
-  double density_kg_per_m3 = 2400;      ///< of one aggregate, bulk density / (1 - packing porosity)
+  double local_damping = 0.7;           ///< quasi-static tests; alpha of Cundall
+  double density_kg_per_m3 = 2650;      ///< of one grain; scales out of tests without gravity
 };
 
 /// Names and ranges of all numbers of a material.

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/command_fit.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/fit_card.hpp"
+#include "calibrate/cli/fit_output.hpp"
+#include "calibrate/cli/interrupt.hpp"
+#include "calibrate/cli/progress_display.hpp"
+#include "calibrate/cli/run_config.hpp"
+#include "calibrate/cli/run_folder.hpp"
+#include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/config_error.hpp"
+#include "calibrate/fit.hpp"
+#include "calibrate/fit_report.hpp"
+#include "calibrate/soil_fit.hpp"
+#include "dem_core/step.hpp"
+
+namespace tilth {
+namespace {
+
+/// The log of one run: standard error (unless a live bar has it) and log.txt.
+spdlog::logger make_log(const std::filesystem::path& folder, bool quiet_terminal) {
+  auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder / "log.txt").string());
+  file->set_pattern("%Y-%m-%d %H:%M:%S %l %v");
+  auto screen = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+  screen->set_pattern("%v");
+  if (quiet_terminal) screen->set_level(spdlog::level::warn);
+  spdlog::logger log("calibrate", {file, screen});
+  log.flush_on(spdlog::level::info);
+  return log;
+}
+
+int exit_code_of(const FitSummary& s) {
+  switch (s.termination) {
+    case Termination::bad_input:
+    case Termination::under_determined: return exit_bad_input;
+    case Termination::budget_spent:
+    case Termination::stopped: return exit_budget;
+    case Termination::too_many_failures: return exit_failed_runs;
+    case Termination::not_called: return exit_internal;
+    case Termination::no_convergence: return s.is_usable() ? exit_budget : exit_failed_runs;
+    case Termination::converged: break;
+  }
+  if (s.has_unreachable_target()) return exit_unreachable;
+  return s.holdout_failed() ? exit_holdout_failed : exit_done;
+}
+
+std::string criterion_text(const FitOptions& options) {
+  return fmt::format("root mean square of the hold-out residuals (in total sigma) at most {}",
+                     options.holdout_limit);
+}
+
+/// Everything a fit works on, read and checked before the run folder is made.
+struct FitJob {
+  SoilData soil;
+  FitOptions options;
+  Fidelity search = Fidelity::search;
+  Fidelity confirm = Fidelity::confirm;
+  std::vector<std::filesystem::path> inputs;
+};
+
+FitJob read_job(const FitCommandOptions& o) {
+  FitJob job;
+  const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
+  job.soil = load_soil(folder);
+  job.options = o.quick ? quick_fit_options() : FitOptions{};
+  job.options.seed = o.seed;
+  job.options.force = o.force;
+  for (const char* name : {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv"})
+    job.inputs.push_back(folder / name);
+  if (!o.config.empty()) {
+    apply_run_config(o.config, job.soil, job.options);
+    job.inputs.emplace_back(o.config);
+  }
+  if (o.quick) {
+    job.search = Fidelity::preview;
+    job.confirm = Fidelity::search;
+  }
+  const std::vector<std::string> wrong = problems(job.options);
+  if (!wrong.empty()) throw ConfigError(wrong);
+  (void)material_of(job.soil, nominal_values(job.soil));
+  return job;
+}
+
+void write_results(const FitJob& job, const FitSummary& summary, FitCardContext& card,
+                   const RunContext& context, const std::filesystem::path& folder,
+                   spdlog::logger& log) {
+  const ReportContext report{card.provenance_sentence +
+                             (card.quick ? "\nPREVIEW (--quick): small, fast specimens and few "
+                                           "packings; do not publish these numbers"
+                                         : "")};
+  write_file(folder / "fit.json", fit_card_json(job.soil, summary, card));
+  write_file(folder / "fit_report.txt", fit_report_text(summary, report));
+  if (!summary.is_usable() || interrupt_flag().load()) return;
+  log.info("drawing curves at the fitted values");
+  for (const std::string& sentence : write_curves_and_figures(
+           job.soil, summary, job.search, job.confirm, job.options.seed + 3000, context, folder))
+    log.warn(sentence);
+}
+
+}  // namespace
+
+void add_fit_options(CLI::App& app, FitCommandOptions& o) {
+  app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand");
+  app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil");
+  app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
+  app.add_option("--out", o.out, "run folder (default runs/<soil>-<n>)");
+  app.add_option("--seed", o.seed, "first packing seed (default 1)");
+  app.add_option("--threads", o.num_threads, "threads (default: all processors)")
+      ->check(CLI::Range(0, 1024));
+  app.add_option("--lanes", o.max_lanes, "at most this many parameter sets per pack: 1, 4 or 8")
+      ->check(CLI::IsMember({0, 1, 4, 8}));
+  app.add_flag("--quick", o.quick, "a labelled preview: small specimens, few packings");
+  app.add_flag("--force", o.force, "fit even with more free parameters than observations");
+}
+
+int run_fit(const FitCommandOptions& o, const std::string& command_line) {
+  // 1. read and check everything, then make the folder
+  const auto start = std::chrono::steady_clock::now();
+  FitJob job = read_job(o);
+  const std::atomic<bool>& stop = interrupt_flag();
+  const std::filesystem::path folder = make_run_folder(o.out, job.soil.id);
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  spdlog::logger log = make_log(folder, terminal);
+
+  // 2. say what will be done
+  const int threads = o.num_threads > 0
+                          ? o.num_threads
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  PackingStore packings(default_packing_folder());
+  const RunContext context{packings, threads, o.max_lanes, &stop};
+  FitCardContext card{.seed = o.seed,
+                      .quick = o.quick,
+                      .provenance_sentence = provenance_sentence(job.soil),
+                      .measured_share = measured_share(job.soil.targets),
+                      .search = job.search,
+                      .confirm = job.confirm,
+                      .num_threads = threads,
+                      .num_lanes = o.max_lanes > 0 ? o.max_lanes : widest_lanes(),
+                      .command = command_line,
+                      .inputs = job.inputs,
+                      .criterion = criterion_text(job.options)};
+  write_file(folder / "config.json", run_config_json(job.soil, job.options, card));
+  log.info("{}: {}", job.soil.name, card.provenance_sentence);
+  for (const std::string& w : job.soil.warnings) log.warn(w);
+  log.info("fitting {} parameters on {} threads, {} parameter sets per pack, into {}",
+           num_free_parameters(job.soil.parameters), threads, card.num_lanes, folder.string());
+
+  // 3. fit
+  ProgressDisplay display(terminal, [&log](const std::string& line) { log.info(line); });
+  job.options.progress = [&display](const Progress& p) { display.show(p); };
+  job.options.should_stop = [&stop] { return stop.load(); };
+  const Simulator search = dem_simulator(job.soil, job.search, context);
+  const Simulator confirm = dem_simulator(job.soil, job.confirm, context);
+  const FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
+                                 job.options);
+  display.finish();
+
+  // 4. write
+  if (summary.termination == Termination::bad_input ||
+      summary.termination == Termination::under_determined) {
+    log.error(summary.message);
+    return exit_bad_input;
+  }
+  card.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_results(job, summary, card, context, folder, log);
+  log.info(summary.brief_report());
+  std::cout << card.provenance_sentence << '\n';
+  for (const FittedParameter& p : summary.parameters)
+    if (p.estimate)
+      std::cout << fmt::format("{:<28} {:>12.5g}   95 % [{:.4g}, {:.4g}]   {}\n", p.name, p.value,
+                               p.lo95, p.hi95, to_string(p.verdict));
+  std::cout << fmt::format("results: {} ({} s)\n", folder.string(),
+                           static_cast<int>(card.seconds + 0.5));
+  return exit_code_of(summary);
+}
+
+}  // namespace tilth

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/command_simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <thread>
+
+#include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/figures.hpp"
+#include "calibrate/cli/fit_card.hpp"
+#include "calibrate/cli/fit_output.hpp"
+#include "calibrate/cli/interrupt.hpp"
+#include "calibrate/cli/run_config.hpp"
+#include "calibrate/cli/run_folder.hpp"
+#include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/config_error.hpp"
+#include "calibrate/nearest_name.hpp"
+#include "calibrate/parallel.hpp"
+
+namespace tilth {
+namespace {
+
+/// Sets key=value in the test's config or in the material; every mistake is listed.
+void apply_settings(const std::vector<std::string>& settings, TestConfig& config,
+                    SoilMaterial& material, std::vector<std::string>& problems) {
+  std::vector<Field> all = fields(config);
+  for (const Field& f : fields(material)) all.push_back(f);
+  std::vector<std::string> names;
+  for (const Field& f : all) names.emplace_back(f.name);
+  for (const std::string& setting : settings) {
+    const std::size_t equals = setting.find('=');
+    const std::string key = setting.substr(0, equals);
+    if (equals == std::string::npos) {
+      problems.push_back(fmt::format("--set {}: must be key=value", setting));
+      continue;
+    }
+    const Field* field = find_field(all, key);
+    const std::string wrong =
+        field ? set_field(*field, std::string_view(setting).substr(equals + 1))
+              : fmt::format("is no number of this test or material; did you mean {}?",
+                            nearest_name(key, names));
+    if (!wrong.empty()) problems.push_back(fmt::format("--set {}: {}", setting, wrong));
+  }
+}
+
+SoilMaterial starting_material(const SimulateOptions& o, std::vector<std::string>& problems) {
+  if (!o.fit.empty()) {
+    const FittedSet set = read_fit_card(o.fit);
+    if (!o.soil.empty() && set.soil_id != o.soil)
+      problems.push_back(fmt::format("--fit {} is of soil {}, --soil says {}", o.fit, set.soil_id,
+                                     o.soil));
+    return set.material;
+  }
+  const SoilData soil = load_soil(chosen_soil_folder(o.soil, o.soil_folder));
+  return material_of(soil, nominal_values(soil));
+}
+
+void draw(const std::string& id, const std::vector<std::uint64_t>& seeds,
+          const std::vector<ExperimentResult>& results, const std::filesystem::path& folder) {
+  const CurveStyle style = curve_style(id);
+  for (const Curve& first : results.front().curves) {
+    CurveFigure figure{fmt::format("{}, {}", id, first.name), style.x_label, style.y_label,
+                       style.x_column, style.y_column, style.x_scale, style.y_scale, {}, {}};
+    for (std::size_t k = 0; k < results.size(); ++k)
+      for (const Curve& c : results[k].curves)
+        if (c.name == first.name)
+          figure.series.push_back({fmt::format("packing {}", seeds[k]), static_cast<int>(k), c});
+    const std::string why =
+        draw_curves(figure, folder / "figures" / fmt::format("{}_{}.svg", id, first.name));
+    if (!why.empty()) std::cerr << "no figure: " << why << '\n';
+  }
+}
+
+}  // namespace
+
+void add_simulate_options(CLI::App& command, SimulateOptions& o) {
+  command.add_option("--experiment", o.experiment, "name of the virtual test")->required();
+  command.add_option("--soil", o.soil, "soil whose nominal parameters are used");
+  command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil");
+  command.add_option("--fit", o.fit, "fit.json or run folder: use its fitted parameters");
+  command.add_option("--set", o.settings, "key=value of the material or the test; may be repeated")
+      ->take_all();
+  command.add_option("--out", o.out, "output folder (default runs/<experiment>-<n>)");
+  command.add_option("--seed", o.seed, "first packing seed (default 1)");
+  command.add_option("--seeds", o.num_seeds, "number of packings (default 1)")
+      ->check(CLI::Range(1, 1000));
+  command.add_option("--threads", o.num_threads, "threads (default: all processors)")
+      ->check(CLI::Range(0, 1024));
+  command.add_flag("--quick", o.quick, "small and fast specimen");
+}
+
+int run_simulate(const SimulateOptions& o, const std::string& command_line) {
+  std::vector<std::string> problems;
+  TestConfig config = virtual_test(o.experiment, o.quick ? Fidelity::preview : Fidelity::confirm);
+  SoilMaterial material = starting_material(o, problems);
+  apply_settings(o.settings, config, material, problems);
+  for (const std::string& p : range_problems(fields(config))) problems.push_back(p);
+  for (const std::string& p : tilth::problems(material)) problems.push_back(p);
+  if (!problems.empty()) throw ConfigError(problems);
+  const std::filesystem::path folder = make_run_folder(o.out, o.experiment);
+
+  PackingStore packings(default_packing_folder());
+  const int threads = o.num_threads > 0
+                          ? o.num_threads
+                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const RunContext context{packings, threads, 0, &interrupt_flag()};
+  std::vector<std::uint64_t> seeds;
+  for (int k = 0; k < o.num_seeds; ++k) seeds.push_back(o.seed + static_cast<std::uint64_t>(k));
+  std::vector<ExperimentResult> results(seeds.size());
+  parallel_for_each_index(seeds.size(), threads, [&](std::size_t k) {
+    TestConfig own = config;
+    set_packing_seed(own, seeds[k]);
+    const SoilMaterial members[] = {material};
+    results[k] = run_virtual_test(own, members, packings, run_options(context)).front();
+  });
+
+  write_file(folder / "result.json",
+             simulation_json(config, material, seeds, results, command_line));
+  bool all_completed = true;
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    for (const Curve& c : results[k].curves)
+      write_file(folder / "curves" / fmt::format("{}_seed{}_{}.csv", o.experiment, seeds[k], c.name),
+                 curve_csv(c));
+    std::cout << fmt::format("packing {}: {} ({})\n", seeds[k], name_of(results[k].status),
+                             results[k].message);
+    for (const Feature& f : results[k].features)
+      std::cout << fmt::format("  {:<34} {:.6g}\n", f.name, f.value);
+    all_completed = all_completed && results[k].status == RunStatus::completed;
+  }
+  draw(o.experiment, seeds, results, folder);
+  std::cout << "results: " << folder.string() << '\n';
+  if (interrupt_flag().load()) return exit_budget;
+  return all_completed ? exit_done : exit_failed_runs;
+}
+
+}  // namespace tilth

@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/dem_problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calibrate/config_error.hpp"
+#include "calibrate/parallel.hpp"
+#include "calibrate/soil_fit.hpp"
+
+namespace tilth {
+namespace {
+
+bool same_run(const PlannedTest& test, const SoilTarget& target) {
+  return target.test_id == test_id(test.config) && target.condition_id == test.condition_id;
+}
+
+/// Results of all tests, [test][member].
+using TestResults = std::vector<std::vector<ExperimentResult>>;
+
+Evaluation evaluation_of(const std::vector<PlannedTest>& tests, const TestResults& results,
+                         std::size_t member, std::size_t num_targets) {
+  Evaluation e;
+  e.features = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(num_targets),
+                                         std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    const ExperimentResult& r = results[t][member];
+    if (r.status != RunStatus::completed) {
+      const bool stopped = r.status == RunStatus::stopped;
+      return {stopped ? EvaluationStatus::skipped : EvaluationStatus::failed,
+              {},
+              fmt::format("{} ({}): {}", test_id(tests[t].config), name_of(r.status), r.message)};
+    }
+    for (const PlannedTest::Answer& a : tests[t].answers)
+      e.features[static_cast<Eigen::Index>(a.target)] = r.feature(a.feature);
+  }
+  e.status = EvaluationStatus::completed;
+  return e;
+}
+
+}  // namespace
+
+std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity) {
+  std::vector<PlannedTest> tests;
+  for (std::size_t k = 0; k < soil.targets.size(); ++k) {
+    const SoilTarget& target = soil.targets[k];
+    const TestCondition* condition = soil.condition(target.condition_id);
+    if (!condition) throw ConfigError({label(target) + ": its condition is not in conditions.csv"});
+    auto test = std::ranges::find_if(tests, [&](const auto& t) { return same_run(t, target); });
+    if (test == tests.end()) {
+      TestConfig config = virtual_test(target.test_id, fidelity);
+      apply_condition(config, *condition);
+      tests.push_back({config, target.condition_id, {}});
+      test = tests.end() - 1;
+    }
+    test->answers.push_back({k, feature_name(target, *condition)});
+  }
+  return tests;
+}
+
+SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values) {
+  const Eigen::VectorXd all = with_ties(soil.parameters, values);
+  SoilMaterial material;
+  const std::vector<Field> names = fields(material);
+  for (std::size_t k = 0; k < soil.parameters.size(); ++k) {
+    const Field* field = find_field(names, soil.parameters[k].id);
+    if (!field)
+      throw ConfigError({soil.parameters[k].id + " in parameters.csv is no parameter of the model"});
+    *std::get<double*>(field->value) = all[static_cast<Eigen::Index>(k)];
+  }
+  return material;
+}
+
+RunOptions run_options(const RunContext& context) {
+  RunOptions options;
+  options.max_lanes = context.max_lanes;
+  options.stop = context.stop;
+  options.for_each = [n = context.num_threads](std::size_t count, const auto& body) {
+    parallel_for_each_index(count, n, body);
+  };
+  return options;
+}
+
+Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context) {
+  return [&soil, &context, tests = plan_tests(soil, fidelity)](const Eigen::MatrixXd& parameters,
+                                                               std::uint64_t seed) {
+    std::vector<SoilMaterial> members;
+    for (Eigen::Index m = 0; m < parameters.cols(); ++m)
+      members.push_back(material_of(soil, parameters.col(m)));
+    const RunOptions options = run_options(context);
+    TestResults results(tests.size());
+    parallel_for_each_index(tests.size(), context.num_threads, [&](std::size_t t) {
+      TestConfig config = tests[t].config;
+      set_packing_seed(config, seed);
+      results[t] = run_virtual_test(config, members, context.packings, options);
+    });
+    std::vector<Evaluation> evaluations;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      evaluations.push_back(evaluation_of(tests, results, m, soil.targets.size()));
+    return evaluations;
+  };
+}
+
+}  // namespace tilth

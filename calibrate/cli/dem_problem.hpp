@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The junction: a soil's tables become a fit problem whose simulator runs virtual tests.
+#pragma once
+
+#include <atomic>
+
+#include "calibrate/cli/virtual_test.hpp"
+#include "calibrate/simulator.hpp"
+
+namespace tilth {
+
+/// One virtual test under one condition, and the targets it answers.
+struct PlannedTest {
+  TestConfig config;
+  std::string condition_id;
+  struct Answer {
+    std::size_t target = 0;  ///< index into SoilData::targets
+    std::string feature;
+  };
+  std::vector<Answer> answers;
+};
+
+/// The tests that answer all targets of a soil, each test and condition once.
+std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity);
+
+/// Material of one parameter column (SoilData::parameters order), ties applied.
+/// @throws ConfigError if a parameter of the table is not one of the model
+SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values);
+
+/// What runs share: packings, threads, the stop flag.
+struct RunContext {
+  PackingStore& packings;
+  int num_threads = 1;
+  int max_lanes = 0;
+  const std::atomic<bool>* stop = nullptr;
+};
+
+/// RunOptions whose packs run side by side on the context's threads.
+RunOptions run_options(const RunContext& context);
+
+/// Simulator over the planned tests: features in target order, one packing seed per call. A member
+/// fails with the first failing test's reason. Soil and context must outlive it.
+Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context);
+
+}  // namespace tilth

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/program.hpp"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "calibrate/cli/command_check.hpp"
+#include "calibrate/cli/command_fit.hpp"
+#include "calibrate/cli/command_simulate.hpp"
+#include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/tool_info.hpp"
+#include "calibrate/config_error.hpp"
+
+namespace tilth {
+namespace {
+
+std::string command_line_of(int argc, const char* const* argv) {
+  std::string text = "calibrate";
+  for (int k = 1; k < argc; ++k) text += std::string(" ") + argv[k];
+  return text;
+}
+
+int say_bad_input(const ConfigError& error) {
+  const auto& sentences = error.sentences();
+  if (sentences.size() > 1) std::cerr << sentences.size() << " problems:\n";
+  for (const std::string& s : sentences) std::cerr << (sentences.size() > 1 ? "- " : "") << s << '\n';
+  return exit_bad_input;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  CLI::App app("calibrate: fits a bonded-particle (DEM) soil model to soil tests");
+  app.set_version_flag("--version", std::string("tilth ") + tool_version + " (" + tool_commit + ")");
+  FitCommandOptions fit_options;
+  CheckOptions check_options;
+  SimulateOptions simulate_options;
+  add_fit_options(app, fit_options);
+  CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
+  add_check_options(*check, check_options);
+  CLI::App* simulate = app.add_subcommand("simulate", "run one virtual test");
+  add_simulate_options(*simulate, simulate_options);
+  app.require_subcommand(0, 1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? exit_done : exit_bad_input;
+  }
+  const std::string command_line = command_line_of(argc, argv);
+  try {
+    if (check->parsed()) return run_check(check_options);
+    if (simulate->parsed()) return run_simulate(simulate_options, command_line);
+    return run_fit(fit_options, command_line);
+  } catch (const ConfigError& e) {
+    return say_bad_input(e);
+  } catch (const std::exception& e) {
+    std::cerr << "internal error: " << e.what() << '\n';
+    return exit_internal;
+  }
+}
+
+}  // namespace tilth

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Which soil a command is about.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tilth {
+
+/// $TILTH_DATA, or the data folder of the source tree this program was built from.
+std::filesystem::path data_root();
+
+/// The folder of --data, else of --soil under data_root(). @throws ConfigError
+std::filesystem::path chosen_soil_folder(const std::string& soil, const std::string& folder);
+
+}  // namespace tilth

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/virtual_test.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "calibrate/config_error.hpp"
+#include "calibrate/nearest_name.hpp"
+
+namespace tilth {
+namespace {
+
+/// Sizes and speeds of the fidelities; what they cost and how far they are off: docs/experiments/.
+struct Size {
+  int num_particles = 0;
+  double speed_over_wave_speed = 0.0;
+};
+
+Size size_of(Fidelity fidelity) {
+  switch (fidelity) {
+    case Fidelity::preview: return {300, 1.2e-3};
+    case Fidelity::search: return {500, 8e-4};
+    case Fidelity::confirm: return {1500, 3e-4};
+  }
+  return {};
+}
+
+void apply_fidelity(UnconfinedCompressionConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+}
+
+void apply_fidelity(DirectShearConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  c.shear_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+  if (fidelity == Fidelity::preview) c.max_shear_strain = 0.08;
+}
+
+void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+}
+
+std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
+                                  std::span<const SoilMaterial> m, PackingStore& p,
+                                  const RunOptions& o) {
+  return run_unconfined_compression(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const DirectShearConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_direct_shear(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
+                                  std::span<const SoilMaterial> m, PackingStore& p,
+                                  const RunOptions& o) {
+  return run_confined_compression(m, c, p, o);
+}
+
+const std::vector<TestConfig>& all_tests() {
+  static const std::vector<TestConfig> tests = {
+      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{}};
+  return tests;
+}
+
+}  // namespace
+
+const char* test_id(const TestConfig& config) {
+  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression"};
+  return ids[config.index()];
+}
+
+std::vector<std::string> virtual_test_ids() {
+  std::vector<std::string> ids;
+  for (const TestConfig& t : all_tests()) ids.emplace_back(test_id(t));
+  return ids;
+}
+
+TestConfig virtual_test(const std::string& id, Fidelity fidelity) {
+  for (TestConfig test : all_tests()) {
+    if (id != test_id(test)) continue;
+    std::visit([fidelity](auto& c) { apply_fidelity(c, fidelity); }, test);
+    return test;
+  }
+  const std::vector<std::string> known = virtual_test_ids();
+  throw ConfigError({fmt::format("unknown experiment '{}': known are {}; did you mean {}?", id,
+                                 fmt::join(known, ", "), nearest_name(id, known))});
+}
+
+std::vector<Field> fields(TestConfig& config) {
+  return std::visit([](auto& c) { return fields(c); }, config);
+}
+
+void set_packing_seed(TestConfig& config, std::uint64_t seed) {
+  std::visit([seed](auto& c) { c.packing_seed = seed; }, config);
+}
+
+void apply_condition(TestConfig& config, const TestCondition& condition) {
+  if (auto* shear = std::get_if<DirectShearConfig>(&config)) {
+    if (!condition.normal_stress_Pa.empty()) shear->normal_stress_Pa = condition.normal_stress_Pa;
+  }
+  if (auto* oedometer = std::get_if<ConfinedCompressionConfig>(&config)) {
+    oedometer->load_from_stress_Pa =
+        condition.load_from_stress_Pa.value_or(oedometer->load_from_stress_Pa);
+    oedometer->load_to_stress_Pa =
+        condition.load_to_stress_Pa.value_or(oedometer->load_to_stress_Pa);
+    oedometer->unload_to_stress_Pa =
+        condition.unload_to_stress_Pa.value_or(oedometer->unload_to_stress_Pa);
+  }
+}
+
+std::string feature_name(const SoilTarget& target, const TestCondition& condition) {
+  const bool per_stress = target.test_id == "direct_shear" &&
+                          (target.observable_id == "peak_shear_stress_Pa" ||
+                           target.observable_id == "residual_shear_stress_Pa");
+  if (!per_stress || condition.normal_stress_Pa.size() != 1) return target.observable_id;
+  return fmt::format("{}@{:.0f}", target.observable_id, condition.normal_stress_Pa.front());
+}
+
+std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
+                                               std::span<const SoilMaterial> members,
+                                               PackingStore& packings, const RunOptions& options) {
+  return std::visit([&](const auto& c) { return run(c, members, packings, options); }, config);
+}
+
+}  // namespace tilth

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The virtual tests by name: the one list that fit, simulate and check share.
+#pragma once
+
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calibrate/soil_data.hpp"
+#include "experiments/confined_compression.hpp"
+#include "experiments/direct_shear.hpp"
+#include "experiments/unconfined_compression.hpp"
+
+namespace tilth {
+
+using TestConfig =
+    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig>;
+
+/// How large and how slow: `search` finds, `confirm` is believed.
+enum class Fidelity {
+  preview,  ///< about 300 spheres, very fast: --quick
+  search,   ///< about 500 spheres, fast
+  confirm   ///< about 1500 spheres, slow
+};
+
+/// "unconfined_compression", "direct_shear", "confined_compression".
+std::vector<std::string> virtual_test_ids();
+
+/// Default config of a test at a fidelity. @throws ConfigError naming the known tests
+TestConfig virtual_test(const std::string& test_id, Fidelity fidelity);
+
+const char* test_id(const TestConfig& config);
+
+std::vector<Field> fields(TestConfig& config);
+
+void set_packing_seed(TestConfig& config, std::uint64_t seed);
+
+/// Takes normal stresses and load stresses of a condition over into the config.
+void apply_condition(TestConfig& config, const TestCondition& condition);
+
+/// Name of the feature that answers a target: direct shear stresses carry "@<normal stress>".
+std::string feature_name(const SoilTarget& target, const TestCondition& condition);
+
+std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
+                                               std::span<const SoilMaterial> members,
+                                               PackingStore& packings, const RunOptions& options);
+
+}  // namespace tilth

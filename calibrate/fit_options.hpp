@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+// How a fit is run: every stage's size and stopping rule, in units of simulations.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "calibrate/evaluator.hpp"
+
+namespace tilth {
+
+/// One simulation is one parameter set on one seed. Seeds are consecutive numbers, so that
+/// packings can be named and kept: search and noise use seed, seed + 1, ...; the confirming
+/// simulator seed + 1000, ...; the fresh seeds at the end seed + 2000, ...
+struct FitOptions {
+  std::uint64_t seed = 1;
+  int num_design = 32;        ///< Sobol points beside the start values; 0 = start values only
+  int num_noise_seeds = 6;    ///< repeats at the best design point; < 2 = no seed noise assumed
+  int num_search_seeds = 3;   ///< packings averaged in the local stage
+  int num_confirm_seeds = 4;  ///< runs of the confirming simulator per bias round
+  int num_fresh_seeds = 4;    ///< runs at the end on seeds no stage has used; 0 = none
+  int num_rounds = 3;         ///< emulator rounds; 0 = no emulator
+  int round_size = 6;         ///< real runs per emulator round
+  int num_starts = 3;         ///< local searches from the best real points
+  int max_iterations = 15;    ///< of one local search
+  int max_bias_rounds = 2;    ///< bias, refit, bias, refit
+  /// A local search has converged when an iteration lowers chi-square by less than this. 0.01 is
+  /// a tenth of a standard error at most.
+  double chi_square_tolerance = 0.01;
+  /// Half-width of a central secant where the parameter states none: in ln v if log_scale ...
+  double log_step = 0.05;
+  /// ... else as a share of upper - lower. 3-10 % keeps the noise of a fixed packing small.
+  double linear_step = 0.05;
+  std::size_t max_simulations = 2000;
+  double holdout_limit = 2.0;  ///< pass mark: root mean square of the hold-out residuals
+  bool force = false;          ///< fit even if there are more free parameters than observations
+  std::function<bool()> should_stop;              ///< asked before every batch; may be empty
+  std::function<void(const Progress&)> progress;  ///< called after every batch; may be empty
+};
+
+/// A preset for a first look: fewer points, one packing, one start. Same stages, wider intervals.
+FitOptions quick_fit_options();
+
+/// Everything wrong with the options, one sentence each; empty if they may be used.
+std::vector<std::string> problems(const FitOptions& options);
+
+/// Simulations a fit will take, assuming six iterations per local search; an estimate for
+/// progress bars, never more than max_simulations.
+std::size_t expected_simulations(const FitOptions& options, std::size_t num_free, bool has_confirm);
+
+}  // namespace tilth

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include <cmath>
+
+#include "calibrate/fit_stages.hpp"
+
+namespace tilth {
+namespace {
+
+// What the model says at the optimum, and how sure its mean is.
+struct Prediction {
+  Eigen::VectorXd mean;             // T, all targets
+  Eigen::VectorXd variance;         // T, of the mean
+  Eigen::VectorXd variance_of_one;  // T, of one simulation
+};
+
+Prediction predict(FitContext& context) {
+  const Eigen::VectorXd& one =
+      context.num_bias_seeds > 0 ? context.confirm_variance : context.seed_variance;
+  const Optimum& optimum = *context.optimum;
+  Evaluator& evaluator = context.num_bias_seeds > 0 ? *context.confirm : context.search;
+  const Eigen::MatrixXd samples = repeat_on_seeds(
+      context, evaluator, optimum.unit,
+      stage_seeds(context.options, SeedUse::fresh, context.options.num_fresh_seeds));
+  context.summary.num_fresh_seeds = static_cast<int>(samples.cols());
+  if (samples.cols() > 0) {
+    return {samples.rowwise().mean(), one / static_cast<double>(samples.cols()), one};
+  }
+  return {optimum.mean + context.bias, model_variance(context, optimum.num_seeds), one};
+}
+
+// T, from the covariance of the parameters: sqrt(diag(J C J')).
+Eigen::VectorXd parameter_deviations(const FitContext& context) {
+  const auto n = static_cast<Eigen::Index>(context.targets.size());
+  if (!context.uncertainty) return Eigen::VectorXd::Constant(n, not_known);
+  const Eigen::MatrixXd& jacobian = context.secants->jacobian;
+  return (jacobian * context.uncertainty->covariance * jacobian.transpose()).diagonal().cwiseSqrt();
+}
+
+TargetResult compare(const FitContext& context, const Prediction& prediction,
+                     const Eigen::VectorXd& parameter_sd, std::size_t target) {
+  const Target& t = context.targets[target];
+  const auto k = static_cast<Eigen::Index>(target);
+  TargetResult result;
+  result.name = t.name;
+  result.provenance = t.provenance;
+  result.log_transform = t.log_transform;
+  result.value = t.value;
+  result.sigma = t.sigma;
+  result.simulated = untransformed(t, prediction.mean[k]);
+  result.seed_sd = std::sqrt(prediction.variance_of_one[k]);
+  result.parameter_sd = parameter_sd[k];
+  result.sigma_total = total_sigma(t.sigma, prediction.variance[k], 1, 0.0);
+  if (t.holdout && std::isfinite(parameter_sd[k])) {
+    result.sigma_total = std::hypot(result.sigma_total, parameter_sd[k]);
+  }
+  result.residual = (prediction.mean[k] - transformed(t, t.value)) / result.sigma_total;
+  result.bias = context.bias[k];
+  result.bias_error = context.bias_error[k];
+  if (!t.holdout) set_reachability(context, target, result);
+  return result;
+}
+
+}  // namespace
+
+void run_fresh(FitContext& context) {
+  if (!context.optimum) return;
+  begin_stage(context.ledger, "fresh seeds");
+  const Prediction prediction = predict(context);
+  const Eigen::VectorXd parameter_sd = parameter_deviations(context);
+  FitSummary& summary = context.summary;
+  double fitted_sum = 0.0;
+  double holdout_sum = 0.0;
+  for (std::size_t k = 0; k < context.targets.size(); ++k) {
+    const TargetResult result = compare(context, prediction, parameter_sd, k);
+    const double square = result.residual * result.residual;
+    (context.targets[k].holdout ? holdout_sum : fitted_sum) += square;
+    (context.targets[k].holdout ? summary.holdouts : summary.targets).push_back(result);
+  }
+  if (summary.num_fresh_seeds > 0) summary.chi_square_fresh = fitted_sum;
+  if (!summary.holdouts.empty()) {
+    summary.holdout_rms = std::sqrt(holdout_sum / static_cast<double>(summary.holdouts.size()));
+  }
+}
+
+}  // namespace tilth

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "calibrate/fit_stages.hpp"
+#include "calibrate/optimise_ceres.hpp"
+#include "calibrate/seed_average.hpp"
+
+namespace tilth {
+namespace {
+
+constexpr double start_distance = 0.05;  // starts closer than this in the unit cube are one start
+constexpr double same_chi_square = 0.1;  // "found the best value"
+
+// Counts how often a parameter's secants failed, for one warning each.
+using FrozenCounts = std::map<std::size_t, int>;
+
+// chi-square as Ceres sees it: means over the search seeds, derivatives by paired secants.
+LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen) {
+  const auto d = static_cast<Eigen::Index>(context.free.size());
+  const auto seeds =
+      stage_seeds(context.options, SeedUse::search, context.options.num_search_seeds);
+  const Eigen::VectorXd steps =
+      secant_steps(context.parameters, context.options.log_step, context.options.linear_step);
+  LeastSquaresProblem problem;
+  problem.lower = Eigen::VectorXd::Zero(d);
+  problem.upper = Eigen::VectorXd::Ones(d);
+  problem.num_residuals = static_cast<int>(context.fitted.size() + num_priors(context));
+  problem.evaluate = [&context, &frozen, seeds, steps](const Eigen::VectorXd& unit,
+                                                       Eigen::VectorXd& residuals,
+                                                       Eigen::MatrixXd* jacobian) {
+    const auto num_seeds = static_cast<int>(seeds.size());
+    if (jacobian == nullptr) {
+      const auto mean =
+          average_over_seeds(context.search, context.parameters, context.targets, unit, seeds)
+              .front();
+      if (!mean) return false;
+      residuals = fit_residuals(context, unit, *mean, num_seeds);
+      return true;
+    }
+    const auto secants =
+        paired_secants(context.search, context.parameters, context.targets, unit, steps, seeds);
+    if (!secants) return false;
+    for (const std::size_t j : secants->frozen) ++frozen[j];
+    residuals = fit_residuals(context, unit, secants->base, num_seeds);
+    *jacobian = residual_jacobian(context, secants->jacobian, num_seeds);
+    return true;
+  };
+  return problem;
+}
+
+void warn_frozen(FitContext& context, const FrozenCounts& frozen) {
+  for (const auto& [j, count] : frozen) {
+    context.summary.warnings.push_back(
+        fmt::format("{} was frozen for {} iteration(s) of a local search: the runs on both sides "
+                    "of it failed",
+                    context.parameters[context.free[j]].name, count));
+  }
+}
+
+// The best real points, no two of them close together.
+std::vector<Eigen::VectorXd> choose_starts(const FitContext& context) {
+  std::vector<Eigen::VectorXd> starts;
+  for (const std::size_t i : ranked_points(context)) {
+    if (static_cast<int>(starts.size()) == context.options.num_starts) break;
+    const Eigen::VectorXd& unit = context.points[i].unit;
+    const bool is_new =
+        std::none_of(starts.begin(), starts.end(), [&](const Eigen::VectorXd& other) {
+          return (other - unit).lpNorm<Eigen::Infinity>() < start_distance;
+        });
+    if (is_new) starts.push_back(unit);
+  }
+  return starts;
+}
+
+LeastSquaresOptions local_options(FitContext& context) {
+  LeastSquaresOptions options;
+  options.max_iterations = context.options.max_iterations;
+  options.absolute_tolerance = context.options.chi_square_tolerance;
+  options.parameter_tolerance = 1e-5;  // of the unit cube: far below any standard error
+  options.should_stop = [&context] { return is_blocked(context.ledger); };
+  return options;
+}
+
+}  // namespace
+
+void refit_from(FitContext& context, const Eigen::VectorXd& unit_start) {
+  FrozenCounts frozen;
+  const LeastSquaresProblem problem = local_problem(context, frozen);
+  const LeastSquaresResult found = minimise_with_ceres(problem, unit_start, local_options(context));
+  warn_frozen(context, frozen);
+  context.summary.starts.push_back(
+      {context.ledger.stage, physical_point(context.parameters, unit_start),
+       physical_point(context.parameters, found.x), found.sum_of_squares_start,
+       found.sum_of_squares, found.num_iterations, found.usable, found.converged, found.message});
+  if (!found.usable) return;
+  record_cost(context, found.sum_of_squares);
+  const int num_seeds = context.options.num_search_seeds;
+  const bool first = !context.optimum || !context.optimum->from_local_search;
+  if (!first && found.sum_of_squares > context.optimum->chi_square) return;
+  const auto seeds = stage_seeds(context.options, SeedUse::search, num_seeds);
+  const auto mean =
+      average_over_seeds(context.search, context.parameters, context.targets, found.x, seeds)
+          .front();  // remembered: no new run
+  context.optimum = {found.x, *mean, num_seeds, found.sum_of_squares, true, found.converged};
+}
+
+void run_local_starts(FitContext& context) {
+  begin_stage(context.ledger, "local search");
+  for (const Eigen::VectorXd& start : choose_starts(context)) {
+    if (is_blocked(context.ledger)) break;
+    refit_from(context, start);
+  }
+  context.summary.num_starts = static_cast<int>(context.summary.starts.size());
+  for (const StartResult& start : context.summary.starts) {
+    if (start.usable && start.chi_square <= context.optimum->chi_square + same_chi_square) {
+      ++context.summary.num_starts_at_best;
+    }
+  }
+}
+
+}  // namespace tilth

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/fit_stages.hpp"
+#include "calibrate/seed_average.hpp"
+
+namespace tilth {
+namespace {
+
+// Weight of the pooled variance, in degrees of freedom: with a handful of seeds a single variance
+// is known to a factor of two at best.
+constexpr double prior_freedom = 8.0;
+
+Eigen::VectorXd sample_variance(const Eigen::MatrixXd& samples) {
+  if (samples.cols() < 2) return Eigen::VectorXd::Zero(samples.rows());
+  const Eigen::MatrixXd rest = samples.colwise() - samples.rowwise().mean();
+  return rest.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1);
+}
+
+// What makes variances of different targets comparable: T is relative already on a log scale,
+// else the size of the mean simulated value.
+double pooling_scale(const Target& target, double mean) {
+  if (target.log_transform) return 1.0;
+  return mean != 0.0 ? std::abs(mean) : target.sigma;
+}
+
+// Mean relative variance of the fitted targets, brought back to each target's scale.
+Eigen::VectorXd pooled_variance(const FitContext& context, const Eigen::MatrixXd& samples) {
+  const Eigen::VectorXd variance = sample_variance(samples);
+  const Eigen::VectorXd mean = samples.rowwise().mean();
+  Eigen::VectorXd scale(mean.size());
+  for (std::size_t k = 0; k < context.targets.size(); ++k) {
+    const auto index = static_cast<Eigen::Index>(k);
+    scale[index] = pooling_scale(context.targets[k], mean[index]);
+  }
+  double pooled = 0.0;
+  for (const std::size_t target : context.fitted) {
+    const auto k = static_cast<Eigen::Index>(target);
+    pooled += variance[k] / (scale[k] * scale[k]) / static_cast<double>(context.fitted.size());
+  }
+  return pooled * scale.array().square();
+}
+
+// Sample correlations of the fitted targets, moderated toward their mean like the variances: one
+// packing often moves all features together. Stays positive semidefinite, as both parts are.
+Eigen::MatrixXd moderated_correlation(const FitContext& context, const Eigen::MatrixXd& samples) {
+  const auto n = static_cast<Eigen::Index>(context.fitted.size());
+  const auto freedom = static_cast<double>(samples.cols() - 1);
+  Eigen::MatrixXd rest(n, samples.cols());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<Eigen::Index>(context.fitted[static_cast<std::size_t>(i)]);
+    rest.row(i) = samples.row(k).array() - samples.row(k).mean();
+    if (rest.row(i).norm() > 0.0) rest.row(i).normalize();
+  }
+  Eigen::MatrixXd sample = rest * rest.transpose();
+  sample.diagonal().setOnes();
+  const auto num_pairs = static_cast<double>(n * (n - 1));
+  const double mean = n > 1 ? (sample.sum() - static_cast<double>(n)) / num_pairs : 0.0;
+  Eigen::MatrixXd pooled = Eigen::MatrixXd::Constant(n, n, mean);
+  pooled.diagonal().setOnes();
+  return (prior_freedom * pooled + freedom * sample) / (prior_freedom + freedom);
+}
+
+}  // namespace
+
+Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior) {
+  const auto freedom = static_cast<double>(std::max<Eigen::Index>(0, samples.cols() - 1));
+  return (prior_freedom * prior + freedom * sample_variance(samples)) / (prior_freedom + freedom);
+}
+
+Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
+                                const Eigen::VectorXd& unit,
+                                const std::vector<std::uint64_t>& seeds) {
+  Eigen::MatrixXd samples(static_cast<Eigen::Index>(context.targets.size()), 0);
+  const Eigen::VectorXd point = physical_point(context.parameters, unit);
+  for (const std::uint64_t seed : seeds) {
+    const Evaluation run = evaluator.evaluate(point, seed).front();
+    if (run.status != EvaluationStatus::completed) continue;
+    samples.conservativeResize(Eigen::NoChange, samples.cols() + 1);
+    samples.rightCols(1) = transformed_features(context.targets, run);
+  }
+  return samples;
+}
+
+void run_noise(FitContext& context) {
+  if (!context.optimum || context.options.num_noise_seeds < 2) return;
+  begin_stage(context.ledger, "noise floor");
+  const Eigen::MatrixXd samples = repeat_on_seeds(
+      context, context.search, context.optimum->unit,
+      stage_seeds(context.options, SeedUse::search, context.options.num_noise_seeds));
+  context.summary.num_noise_seeds = static_cast<int>(samples.cols());
+  if (samples.cols() < 2) {
+    context.summary.warnings.emplace_back(
+        "seed noise is not known: fewer than two repeats completed; it is taken as zero");
+    return;
+  }
+  context.seed_variance = moderated_variance(samples, pooled_variance(context, samples));
+  context.seed_correlation = moderated_correlation(context, samples);
+}
+
+}  // namespace tilth

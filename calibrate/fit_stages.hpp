@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+// Private to fit(): the state its stages share, and the stages themselves.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/evaluator.hpp"
+#include "calibrate/fit_options.hpp"
+#include "calibrate/fit_summary.hpp"
+#include "calibrate/parameters.hpp"
+#include "calibrate/secants.hpp"
+#include "calibrate/targets.hpp"
+#include "calibrate/uncertainty.hpp"
+
+namespace tilth {
+
+/// A point simulated on the first search seed.
+struct KnownPoint {
+  Eigen::VectorXd unit;                     ///< (num_free)
+  std::optional<Eigen::VectorXd> features;  ///< T, all targets; empty if the run failed
+};
+
+/// The best point so far, on num_seeds packings.
+struct Optimum {
+  Eigen::VectorXd unit;  ///< (num_free)
+  Eigen::VectorXd mean;  ///< T, all targets, without bias
+  int num_seeds = 1;
+  double chi_square = not_known;
+  bool from_local_search = false;  ///< else a point of the design or of a search round
+  bool converged = false;
+};
+
+/// "T" marks quantities of the transformed value; vectors over targets have all of them, hold-outs
+/// included, in table order.
+struct FitContext {
+  const std::vector<Parameter>& parameters;
+  const std::vector<Target>& targets;
+  const FitOptions& options;
+  std::vector<std::size_t> free;    ///< positions of the free parameters
+  std::vector<std::size_t> fitted;  ///< positions of the fitted targets
+  SimulationLedger& ledger;
+  Evaluator search;
+  std::optional<Evaluator> confirm;
+  FitSummary summary{};
+
+  std::vector<KnownPoint> points{};    ///< start first, then design, then search rounds
+  Eigen::VectorXd seed_variance{};     ///< T, one search simulation
+  Eigen::VectorXd confirm_variance{};  ///< T, one confirming simulation
+  Eigen::MatrixXd seed_correlation{};  ///< of the fitted targets
+  Eigen::VectorXd bias{};              ///< T, mean confirm - mean search
+  Eigen::VectorXd bias_error{};        ///< T; NaN while there is no bias
+  int num_bias_seeds = 0;              ///< completed confirming runs behind bias; 0 = none
+  std::optional<Optimum> optimum{};
+  std::optional<Secants> secants{};                ///< at the optimum
+  std::optional<LinearUncertainty> uncertainty{};  ///< at the optimum
+};
+
+/// num consecutive seeds of a stage, see FitOptions.
+enum class SeedUse { search = 0, confirm = 1000, fresh = 2000 };
+std::vector<std::uint64_t> stage_seeds(const FitOptions& options, SeedUse use, int num);
+
+// fit_residuals.cpp
+/// Variance of T of the model's mean over num_seeds packings, per target: v / num_seeds; once
+/// the bias is known that of the confirming mean, because the search packings it was measured on
+/// cancel in search + bias.
+Eigen::VectorXd model_variance(const FitContext& context, int num_seeds);
+/// sigma_total of the fitted targets. @shape (num_fitted)
+Eigen::VectorXd fitted_sigmas(const FitContext& context, int num_seeds);
+/// Fitted targets, then priors of free parameters. Hold-outs are not in it.
+Eigen::VectorXd fit_residuals(const FitContext& context, const Eigen::VectorXd& unit,
+                              const Eigen::VectorXd& mean, int num_seeds);
+/// d fit_residuals / d unit from d mean / d unit (all targets).
+Eigen::MatrixXd residual_jacobian(const FitContext& context,
+                                  const Eigen::MatrixXd& feature_jacobian, int num_seeds);
+/// Number of priors on free parameters.
+std::size_t num_priors(const FitContext& context);
+/// Books chi-square in the history.
+void record_cost(FitContext& context, double chi_square);
+
+// fit_stage_design.cpp
+void run_design(FitContext& context);
+/// Simulates points on the first search seed and adds them to context.points.
+void add_points(FitContext& context, const Eigen::MatrixXd& unit_points);
+/// Completed points, best chi-square first (ties in order of simulation).
+std::vector<std::size_t> ranked_points(const FitContext& context);
+/// Range of all search points and the optimum against the targets: fills `result`.
+void set_reachability(const FitContext& context, std::size_t target, TargetResult& result);
+
+// fit_stage_noise.cpp
+/// Moderated variances: (d0 v_prior + df v) / (d0 + df), d0 = 8, df = runs - 1.
+/// @shape samples (num_targets, num_runs), prior (num_targets)
+Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior);
+/// One point on several seeds, completed runs only. @shape (num_targets, num_completed), T
+Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
+                                const Eigen::VectorXd& unit,
+                                const std::vector<std::uint64_t>& seeds);
+void run_noise(FitContext& context);
+
+// fit_stage_search.cpp
+void run_search_rounds(FitContext& context);
+
+// fit_stage_local.cpp
+void run_local_starts(FitContext& context);
+/// One local search, booked as a start; context.optimum becomes its end if that is better.
+void refit_from(FitContext& context, const Eigen::VectorXd& unit_start);
+
+// fit_stage_bias.cpp
+void run_bias(FitContext& context);
+
+// fit_stage_uncertainty.cpp
+/// Secants and covariance at the optimum; leaves them empty if its runs cannot be had.
+void update_uncertainty(FitContext& context);
+/// Fills parameters, covariance, correlation and null directions of the summary.
+void report_parameters(FitContext& context);
+
+// fit_stage_fresh.cpp
+/// Fresh-seed runs; fills targets and hold-outs of the summary.
+void run_fresh(FitContext& context);
+
+}  // namespace tilth

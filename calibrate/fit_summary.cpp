@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include "calibrate/fit_summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace tilth {
+
+std::string_view to_string(Termination termination) {
+  switch (termination) {
+    case Termination::not_called:
+      return "not_called";
+    case Termination::converged:
+      return "converged";
+    case Termination::no_convergence:
+      return "no_convergence";
+    case Termination::budget_spent:
+      return "budget_spent";
+    case Termination::stopped:
+      return "stopped";
+    case Termination::too_many_failures:
+      return "too_many_failures";
+    case Termination::under_determined:
+      return "under_determined";
+    case Termination::bad_input:
+      return "bad_input";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(Reachability reachability) {
+  switch (reachability) {
+    case Reachability::unknown:
+      return "unknown";
+    case Reachability::reachable:
+      return "reachable";
+    case Reachability::edge:
+      return "edge";
+    case Reachability::unreachable:
+      return "unreachable";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(ParameterVerdict verdict) {
+  switch (verdict) {
+    case ParameterVerdict::unknown:
+      return "unknown";
+    case ParameterVerdict::fixed:
+      return "fixed";
+    case ParameterVerdict::identified:
+      return "identified";
+    case ParameterVerdict::bound_limited:
+      return "bound_limited";
+    case ParameterVerdict::flat:
+      return "flat";
+  }
+  return "unknown";
+}
+
+bool FitSummary::is_usable() const {
+  if (termination == Termination::too_many_failures) return false;
+  return std::any_of(starts.begin(), starts.end(), [](const StartResult& s) { return s.usable; });
+}
+
+bool FitSummary::holdout_failed() const { return holdout_rms > holdout_limit; }
+
+bool FitSummary::has_unreachable_target() const {
+  return std::any_of(targets.begin(), targets.end(), [](const TargetResult& target) {
+    return target.reachability == Reachability::unreachable;
+  });
+}
+
+Eigen::VectorXd FitSummary::values() const {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(parameters.size()));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    result[static_cast<Eigen::Index>(i)] = parameters[i].value;
+  }
+  return result;
+}
+
+std::string FitSummary::brief_report() const {
+  if (termination == Termination::not_called) return message;
+  return fmt::format(
+      "{}: {} chi-square {:.4g} -> {:.4g} (fresh seeds {:.4g}); {} simulations, {} failed",
+      to_string(termination), message, chi_square_start, chi_square, chi_square_fresh,
+      num_simulations, failures.size());
+}
+
+}  // namespace tilth

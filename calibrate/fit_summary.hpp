@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+// What a fit found, how sure it is, and how it ended.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibrate/evaluator.hpp"
+#include "calibrate/targets.hpp"
+
+namespace tilth {
+
+/// Why fit() returned.
+enum class Termination {
+  not_called,
+  converged,          ///< the best local search met its stopping rule
+  no_convergence,     ///< it ran out of iterations, or no local search could be started
+  budget_spent,       ///< max_simulations
+  stopped,            ///< should_stop()
+  too_many_failures,  ///< more than 30 % of a batch of at least 8 failed
+  under_determined,   ///< more free parameters than observations, and no force
+  bad_input,          ///< problems() of parameters, targets or options
+};
+std::string_view to_string(Termination termination);
+
+/// Is a target inside what the model produced in all search runs?
+enum class Reachability {
+  unknown,
+  reachable,    ///< inside the range
+  edge,         ///< outside by at most 2 sigma_total
+  unreachable,  ///< outside by more
+};
+std::string_view to_string(Reachability reachability);
+
+/// What the covariance says about a parameter (a profile likelihood may say more).
+enum class ParameterVerdict {
+  unknown,        ///< no covariance
+  fixed,          ///< was not estimated
+  identified,     ///< the 95 % interval lies inside the bounds
+  bound_limited,  ///< the value or the interval is cut off by a bound
+  flat,           ///< part of a null direction: the data do not fix it
+};
+std::string_view to_string(ParameterVerdict verdict);
+
+inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+/// One parameter after the fit; physical unless said otherwise.
+struct FittedParameter {
+  std::string name;
+  double start = not_known;
+  double value = not_known;
+  double lo95 = not_known;            ///< clipped at lower
+  double hi95 = not_known;            ///< clipped at upper
+  double standard_error = not_known;  ///< in the coordinate (relative if log_scale)
+  double lower = not_known;
+  double upper = not_known;
+  bool log_scale = false;
+  bool estimate = true;
+  ParameterVerdict verdict = ParameterVerdict::unknown;
+  std::string no_error_bar;  ///< completes "no error bar because ..."; empty if there is one
+};
+
+/// One target after the fit. "T" marks quantities of the transformed value (ln if log_transform).
+struct TargetResult {
+  std::string name;
+  Provenance provenance = Provenance::synthetic;
+  bool log_transform = false;
+  double value = not_known;         ///< physical
+  double sigma = not_known;         ///< T, as given
+  double simulated = not_known;     ///< physical, mean over the fresh seeds (else search seeds)
+  double seed_sd = not_known;       ///< T, scatter of one simulation, moderated
+  double sigma_total = not_known;   ///< T, what the residual is divided by
+  double residual = not_known;      ///< (T(simulated) - T(value)) / sigma_total
+  double parameter_sd = not_known;  ///< T, from the covariance; in sigma_total of hold-outs only
+  Reachability reachability = Reachability::unknown;  ///< fitted targets only
+  double reach_gap = not_known;   ///< distance outside the range / sigma_total; < 0 inside
+  double bias = 0.0;              ///< T, mean confirm - mean search at the optimum
+  double bias_error = not_known;  ///< T, its standard error; NaN without a confirming simulator
+};
+
+/// One local search.
+struct StartResult {
+  std::string stage;      ///< "local search", or "bias" for a refit
+  Eigen::VectorXd start;  ///< physical, all parameters
+  Eigen::VectorXd value;
+  double chi_square_start = not_known;
+  double chi_square = not_known;
+  int num_iterations = 0;
+  bool usable = false;     ///< value is at least as good as start
+  bool converged = false;  ///< its stopping rule was met
+  std::string message;
+};
+
+/// chi-square after so many simulations, on the seeds of that stage.
+struct CostPoint {
+  std::string stage;
+  std::size_t num_simulations = 0;
+  double chi_square = not_known;
+};
+
+struct FitSummary {
+  Termination termination = Termination::not_called;
+  std::string message = "fit() was not called";
+
+  std::vector<FittedParameter> parameters;  ///< all, in table order
+  std::vector<TargetResult> targets;        ///< the fitted ones, in table order
+  std::vector<TargetResult> holdouts;
+
+  double chi_square_start = not_known;  ///< start values, first search seed
+  double chi_square = not_known;  ///< optimum, search seeds, priors included: what was minimised
+  double chi_square_fresh = not_known;  ///< optimum, fresh seeds, fitted targets only
+  std::size_t num_free = 0;
+  std::size_t num_observations = 0;  ///< fitted targets + priors of free parameters
+  std::size_t num_independent = 0;   ///< observation groups + priors of free parameters
+  int num_noise_seeds = 0;           ///< completed repeats behind seed_sd
+  int num_fresh_seeds = 0;           ///< completed runs behind chi_square_fresh
+  double holdout_rms = not_known;    ///< root mean square hold-out residual; NaN without hold-outs
+  double holdout_limit = not_known;  ///< the pass mark it is compared with
+
+  std::vector<StartResult> starts;
+  int num_starts = 0;          ///< of the local search, refits not counted
+  int num_starts_at_best = 0;  ///< those whose chi-square is within 0.1 of the best
+  std::vector<CostPoint> history;
+
+  /// Of the free parameters, in the coordinate (ln v if log_scale), without null directions.
+  /// sigma is taken as absolute: nothing is rescaled by the reduced chi-square. Empty if unknown.
+  Eigen::MatrixXd covariance;
+  Eigen::MatrixXd correlation;               ///< NaN where a parameter has no error bar
+  std::vector<std::string> null_directions;  ///< in words
+  Eigen::MatrixXd seed_covariance;           ///< T of the fitted targets, one simulation
+
+  int num_bias_rounds = 0;
+  double last_bias_shift = not_known;  ///< largest move of a parameter / its standard error
+
+  std::size_t num_simulations = 0;  ///< completed + failed
+  std::vector<StageCount> stages;
+  std::vector<FailedRun> failures;
+  std::vector<std::string> warnings;
+
+  /// A local search ended at a point at least as good as its start, on complete runs.
+  bool is_usable() const;
+  /// Did the hold-out criterion fail? (false without hold-outs)
+  bool holdout_failed() const;
+  /// Is any fitted target unreachable?
+  bool has_unreachable_target() const;
+  /// Values of all parameters, physical, in table order.
+  Eigen::VectorXd values() const;
+  /// One line: how it ended, chi-square before and after, simulations.
+  std::string brief_report() const;
+};
+
+}  // namespace tilth

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include "calibrate/parallel.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace tilth {
+
+void parallel_for_each_index(std::size_t n, int num_threads,
+                             const std::function<void(std::size_t)>& body) {
+  if (num_threads <= 1) {
+    for (std::size_t i = 0; i < n; ++i) body(i);
+    return;
+  }
+  // One index per task: a body is a whole simulation, so balance matters and overhead does not.
+  tbb::task_arena arena(num_threads);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
+}
+
+}  // namespace tilth

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+// A parallel loop over independent indices; the only door to the thread library.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace tilth {
+
+/// Calls body(i) once for every i in [0, n), on at most num_threads threads.
+///
+/// The order of calls is unspecified: the body writes to slot i and reads nothing another index
+/// writes, then results do not depend on num_threads. num_threads <= 1 runs on the calling thread,
+/// in order.
+/// @throws the first exception a body throws; indices not yet started may then be left out
+void parallel_for_each_index(std::size_t n, int num_threads,
+                             const std::function<void(std::size_t)>& body);
+
+}  // namespace tilth

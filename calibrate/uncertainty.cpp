@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+#include "calibrate/uncertainty.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace tilth {
+namespace {
+
+constexpr double normal_95 = 1.959963984540054;
+constexpr double relative_limit = 1e-3;
+
+// "a", "a^0.5": one factor of a product; the sign is said by "x" or "/".
+std::string factor(const std::string& name, double exponent) {
+  const double size = std::abs(exponent);
+  return std::abs(size - 1.0) < 0.05 ? name : fmt::format("{}^{:.2g}", name, size);
+}
+
+// "a", "0.5 a": one term of a sum.
+std::string term(const std::string& name, double coefficient) {
+  const double size = std::abs(coefficient);
+  return std::abs(size - 1.0) < 0.05 ? name : fmt::format("{:.2g} {}", size, name);
+}
+
+}  // namespace
+
+LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
+                                     const Eigen::MatrixXd& residual_covariance) {
+  const Eigen::Index q = jacobian.cols();
+  // Rows of zeros make V square when there are fewer residuals than parameters.
+  const Eigen::Index num_rows = std::max(jacobian.rows(), q);
+  Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(num_rows, q);
+  padded.topRows(jacobian.rows()) = jacobian;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(padded, Eigen::ComputeThinU | Eigen::ComputeThinV);
+
+  const Eigen::VectorXd s = svd.singularValues();
+  const double limit = std::max(normal_95, relative_limit * s[0]);
+  const Eigen::Index num_kept = (s.array() >= limit).count();  // sorted, largest first
+  const Eigen::MatrixXd u = svd.matrixU().topRows(jacobian.rows()).leftCols(num_kept);
+  const Eigen::MatrixXd v = svd.matrixV().leftCols(num_kept);
+  const Eigen::MatrixXd gain = v * s.head(num_kept).cwiseInverse().asDiagonal() * u.transpose();
+
+  LinearUncertainty result;
+  result.covariance = gain * residual_covariance * gain.transpose();
+  result.null_space = svd.matrixV().rightCols(q - num_kept);
+  result.null_share = result.null_space.rowwise().squaredNorm();
+  return result;
+}
+
+std::string describe_null_direction(std::span<const Parameter> parameters,
+                                    const Eigen::VectorXd& direction) {
+  const std::vector<std::size_t> free = free_parameters(parameters);
+  bool all_log = true;
+  Eigen::VectorXd exponents = direction;
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const auto index = static_cast<Eigen::Index>(j);
+    if (std::abs(direction[index]) < 0.1 * direction.cwiseAbs().maxCoeff()) exponents[index] = 0.0;
+    if (exponents[index] != 0.0 && !parameters[free[j]].log_scale) all_log = false;
+  }
+  if (all_log) {
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      exponents[static_cast<Eigen::Index>(j)] *= coordinate_span(parameters[free[j]]);
+    }
+  }
+  Eigen::Index largest = 0;
+  exponents.cwiseAbs().maxCoeff(&largest);
+  exponents /= exponents[largest];  // the first word is never "1 /"
+
+  std::string words = all_log
+                          ? factor(parameters[free[static_cast<std::size_t>(largest)]].name, 1.0)
+                          : term(parameters[free[static_cast<std::size_t>(largest)]].name, 1.0);
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const double e = exponents[static_cast<Eigen::Index>(j)];
+    if (static_cast<Eigen::Index>(j) == largest || e == 0.0) continue;
+    const std::string& name = parameters[free[j]].name;
+    words += all_log ? fmt::format(" {} {}", e > 0.0 ? "x" : "/", factor(name, e))
+                     : fmt::format(" {} {}", e > 0.0 ? "+" : "-", term(name, e));
+  }
+  return fmt::format("the data do not fix {}{}", words,
+                     all_log ? "" : " (each in units of its range between the bounds)");
+}
+
+}  // namespace tilth

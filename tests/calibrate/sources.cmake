@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: BSD-3-Clause
+list(
+  APPEND
+  TILTH_TEST_SOURCES
+  calibrate/csv_table.cpp
+  calibrate/emulator.cpp
+  calibrate/evaluator.cpp
+  calibrate/fit.cpp
+  calibrate/fit_coverage.cpp
+  calibrate/fit_failures.cpp
+  calibrate/fit_report.cpp
+  calibrate/optimise_ceres.cpp
+  calibrate/optimise_nlopt.cpp
+  calibrate/parallel.cpp
+  calibrate/parameters.cpp
+  calibrate/secants.cpp
+  calibrate/sobol_design.cpp
+  calibrate/soil_data_mistakes.cpp
+  calibrate/soil_data_rules.cpp
+  calibrate/soil_data_shipped.cpp
+  calibrate/strict_json.cpp
+  calibrate/targets.cpp
+  calibrate/uncertainty.cpp)
