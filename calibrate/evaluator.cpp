@@ -38,6 +38,7 @@ void begin_stage(SimulationLedger& ledger, const std::string& stage) {
 
 bool is_blocked(SimulationLedger& ledger) {
   if (!ledger.stop_seen && ledger.should_stop && ledger.should_stop()) ledger.stop_seen = true;
+  if (num_affordable(ledger) == 0) ledger.budget_spent = true;
   return ledger.stop_seen || ledger.too_many_failures || num_affordable(ledger) == 0;
 }
 

@@ -57,13 +57,14 @@ struct SimulationLedger {
   std::vector<FailedRun> failures;
   std::size_t num_done = 0;
   bool stop_seen = false;          ///< should_stop() said yes
-  bool budget_spent = false;       ///< a run was refused because the budget is spent
+  bool budget_spent = false;       ///< a run was, or would have been, refused for it
   bool too_many_failures = false;  ///< the failure rule fired
 };
 
 /// Following runs are booked under this name.
 void begin_stage(SimulationLedger& ledger, const std::string& stage);
-/// Should the fit wind down: no batch with a new run will be started. Asks should_stop().
+/// Should the fit wind down: no batch with a new run will be started. Asks should_stop() and
+/// raises the flags above.
 bool is_blocked(SimulationLedger& ledger);
 
 /// A Simulator with a memory. Results are remembered by (parameters, seed), bit for bit, so

@@ -55,9 +55,9 @@ ContactResponse contact_law(const ContactConstants& constants, const ContactMoti
                               {motion.overlap_rate_m_per_s},
                               pack(motion.sliding_velocity_m_per_s)};
   std::array<double, 3> spring = {spring_m.x(), spring_m.y(), spring_m.z()};
-  const lanes::ContactForce<1> f = lanes::contact_force<1>(
-      law, lanes::law_friction, {motion.overlap_m > 0}, {motion.overlap_m},
-      {constants.normal_stiffness_N_per_m}, {1.0}, e, spring.data());
+  const lanes::ContactForce<1> f =
+      lanes::contact_force<1>(law, lanes::law_friction, {motion.overlap_m > 0}, {motion.overlap_m},
+                              {constants.normal_stiffness_N_per_m}, {1.0}, e, spring.data());
   return {f.normal.v, unpack(f.tangential), Vec3(spring[0], spring[1], spring[2])};
 }
 
@@ -65,10 +65,8 @@ BondResponse bond_force_law(const BondLaw& constants, const BondGeometry& geomet
                             const BondMotion& motion, const BondMemory& memory) {
   const LawBlock block = law_block(constants, dt_s);
   const lanes::Law<1> law(block.data());
-  const lanes::Encounter<1> e{{motion.distance_m},
-                              pack(motion.normal),
-                              {0.0},
-                              pack(motion.sliding_velocity_m_per_s)};
+  const lanes::Encounter<1> e{
+      {motion.distance_m}, pack(motion.normal), {0.0}, pack(motion.sliding_velocity_m_per_s)};
   std::array<double, 8> bond = {memory.shear_N.x(),     memory.shear_N.y(),
                                 memory.shear_N.z(),     memory.bending_N_m.x(),
                                 memory.bending_N_m.y(), memory.bending_N_m.z(),

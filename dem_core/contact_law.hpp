@@ -12,26 +12,26 @@ namespace tilth {
 
 /// Constants of one contact, already combined from LaneLaw and the two bodies.
 struct ContactConstants {
-  double normal_stiffness_N_per_m = 0.0;        ///< k_n > 0
-  double shear_stiffness_ratio = 0.5;           ///< k_s / k_n > 0
-  double friction = 0.0;                        ///< Coulomb coefficient >= 0
-  double normal_damping_N_s_per_m = 0.0;        ///< c_n >= 0
-  double tangential_damping_N_s_per_m = 0.0;    ///< c_t >= 0
-  double dt_s = 0.0;                            ///< step over which the spring is lengthened
+  double normal_stiffness_N_per_m = 0.0;      ///< k_n > 0
+  double shear_stiffness_ratio = 0.5;         ///< k_s / k_n > 0
+  double friction = 0.0;                      ///< Coulomb coefficient >= 0
+  double normal_damping_N_s_per_m = 0.0;      ///< c_n >= 0
+  double tangential_damping_N_s_per_m = 0.0;  ///< c_t >= 0
+  double dt_s = 0.0;                          ///< step over which the spring is lengthened
 };
 
 /// Geometry and relative motion of two bodies a and b.
 struct ContactMotion {
-  Vec3 normal = Vec3::UnitZ();                     ///< unit vector from a to b
-  double overlap_m = 0.0;                          ///< positive while touching
-  double overlap_rate_m_per_s = 0.0;               ///< positive while approaching
-  Vec3 sliding_velocity_m_per_s = Vec3::Zero();    ///< of b against a, in the contact plane
+  Vec3 normal = Vec3::UnitZ();                   ///< unit vector from a to b
+  double overlap_m = 0.0;                        ///< positive while touching
+  double overlap_rate_m_per_s = 0.0;             ///< positive while approaching
+  Vec3 sliding_velocity_m_per_s = Vec3::Zero();  ///< of b against a, in the contact plane
 };
 
 struct ContactResponse {
-  double normal_N = 0.0;                 ///< on b along the normal, positive pushes apart
-  Vec3 tangential_on_a_N = Vec3::Zero(); ///< b receives the opposite
-  Vec3 spring_m = Vec3::Zero();          ///< tangential displacement to carry into the next step
+  double normal_N = 0.0;                  ///< on b along the normal, positive pushes apart
+  Vec3 tangential_on_a_N = Vec3::Zero();  ///< b receives the opposite
+  Vec3 spring_m = Vec3::Zero();           ///< tangential displacement to carry into the next step
 };
 
 /// One step of a linear spring-dashpot contact with Coulomb slip and history.
@@ -71,9 +71,9 @@ struct BondMemory {
 };
 
 struct BondResponse {
-  double normal_N = 0.0;                  ///< on b along the normal, positive pushes apart
+  double normal_N = 0.0;  ///< on b along the normal, positive pushes apart
   Vec3 shear_on_a_N = Vec3::Zero();
-  Vec3 moment_on_a_N_m = Vec3::Zero();    ///< bending and twisting
+  Vec3 moment_on_a_N_m = Vec3::Zero();  ///< bending and twisting
   BondMemory memory;
 };
 

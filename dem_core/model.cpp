@@ -63,9 +63,13 @@ std::vector<std::string> problems(const Model& model) {
   const auto before = [](const auto& a, const auto& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   };
-  if (!std::ranges::is_sorted(model.bonds, before)) found.push_back("bonds are not sorted by (i, j)");
-  if (!std::ranges::is_sorted(model.references, before))
-    found.push_back("references are not sorted by (i, j)");
+  const auto out_of_order = [&](const auto& pairs) {  // or twice the same
+    const auto wrong = [&](const auto& a, const auto& b) { return !before(a, b); };
+    return std::ranges::adjacent_find(pairs, wrong) != pairs.end();
+  };
+  if (out_of_order(model.bonds)) found.push_back("bonds are not sorted by (i, j), each pair once");
+  if (out_of_order(model.references))
+    found.push_back("references are not sorted by (i, j), each pair once");
   return found;
 }
 

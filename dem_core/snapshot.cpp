@@ -34,17 +34,17 @@ void for_each_array(StateRef& s, Visit visit) {
 }
 
 struct DriveRecord {
-  std::array<double, 7> v;
+  std::array<double, 8> v;
 };
 
 DriveRecord flat(const WallDrive& d) {
   return {{d.velocity_m_per_s.x(), d.velocity_m_per_s.y(), d.velocity_m_per_s.z(),
-           d.radial_velocity_m_per_s, d.servo_gain_m_per_N_s, d.target_force_N,
-           d.max_speed_m_per_s}};
+           d.radial_velocity_m_per_s, d.servo_gain_m_per_N_s, d.servo_integral_gain_m_per_N_s2,
+           d.target_force_N, d.max_speed_m_per_s}};
 }
 
 WallDrive unflat(const DriveRecord& r) {
-  return {Vec3(r.v[0], r.v[1], r.v[2]), r.v[3], r.v[4], r.v[5], r.v[6]};
+  return {Vec3(r.v[0], r.v[1], r.v[2]), r.v[3], r.v[4], r.v[5], r.v[6], r.v[7]};
 }
 
 template <typename T>

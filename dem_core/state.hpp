@@ -18,9 +18,12 @@ namespace tilth {
 struct WallDrive {
   Vec3 velocity_m_per_s = Vec3::Zero();  ///< used when servo_gain is 0
   double radial_velocity_m_per_s = 0.0;  ///< cylinders: growth of the radius
-  /// > 0: the plane moves along its normal with gain (target - force), clipped to max_speed, so
-  /// that the compressive force of the specimen on it stays at the target.
+  /// > 0: the plane moves along its normal so that the compressive force of the specimen on it stays
+  /// at the target: speed = gain e + integral, d(integral)/dt = integral_gain e, e = target - force,
+  /// both clipped to max_speed. The integral is kept in velocity_m_per_s; without it a specimen that
+  /// dilates steadily would hold the force off its target by (rate of dilation) / gain.
   double servo_gain_m_per_N_s = 0.0;
+  double servo_integral_gain_m_per_N_s2 = 0.0;
   double target_force_N = 0.0;
   double max_speed_m_per_s = 0.0;
 };
@@ -54,7 +57,9 @@ struct State {
   AlignedDoubles wall_force;
   std::vector<WallDrive> drives;   ///< [wall][lane]
   std::vector<double> time_s;      ///< per lane
-  std::vector<std::uint8_t> active;  ///< per lane; a frozen lane keeps its state
+  /// Per lane. A frozen lane keeps its motion, walls, wall forces, time and which bonds hold; contact
+  /// springs may be dropped. After freezing by hand call model_changed().
+  std::vector<std::uint8_t> active;
   std::int64_t num_steps = 0;
 
   Vec3 position_m(int particle, int lane = 0) const { return motion_part(particle, 0, lane); }

@@ -67,13 +67,19 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
   workspace.prepared = true;
 }
 
-/// Servo: along the normal with gain (target - force). The specimen pushes against the normal.
-Vec3 drive_velocity(const WallDrive& drive, const Wall& wall, const Vec3& force_on_wall_N) {
+/// Velocity of a wall in this step; updates the servo's integral. See WallDrive.
+Vec3 drive_velocity(WallDrive& drive, const Wall& wall, const Vec3& force_on_wall_N, double dt_s) {
   if (drive.servo_gain_m_per_N_s <= 0) return drive.velocity_m_per_s;
-  const double compression_N = -force_on_wall_N.dot(wall.direction);
-  const double speed = std::clamp(drive.servo_gain_m_per_N_s * (drive.target_force_N - compression_N),
-                                  -drive.max_speed_m_per_s, drive.max_speed_m_per_s);
-  return drive.velocity_m_per_s + speed * wall.direction;
+  const double limit = drive.max_speed_m_per_s;
+  // The specimen pushes against the normal.
+  const double error_N = drive.target_force_N + force_on_wall_N.dot(wall.direction);
+  const double integral =
+      std::clamp(drive.velocity_m_per_s.dot(wall.direction) +
+                     drive.servo_integral_gain_m_per_N_s2 * error_N * dt_s,
+                 -limit, limit);
+  drive.velocity_m_per_s = integral * wall.direction;
+  const double speed = drive.servo_gain_m_per_N_s * error_N + integral;
+  return std::clamp(speed, -limit, limit) * wall.direction;
 }
 
 /// Moves every wall of every active lane; returns the wall velocities as packs.
@@ -83,11 +89,11 @@ AlignedDoubles move_walls(const Model& model, State& state, Workspace& workspace
   for (std::size_t wall = 0; wall < model.walls.size(); ++wall)
     for (std::size_t lane = 0; lane < w; ++lane) {
       if (!state.active[lane]) continue;
-      const WallDrive& drive = state.drives[wall * w + lane];
+      WallDrive& drive = state.drives[wall * w + lane];
       const double dt_s = model.lanes[lane].dt_s;
       const Vec3 v = drive_velocity(
           drive, model.walls[wall],
-          state.wall_force_N(static_cast<int>(wall), static_cast<int>(lane)));
+          state.wall_force_N(static_cast<int>(wall), static_cast<int>(lane)), dt_s);
       for (std::size_t k = 0; k < 3; ++k) {
         velocity[(wall * 4 + k) * w + lane] = v[static_cast<Eigen::Index>(k)];
         state.walls[(wall * 4 + k) * w + lane] += dt_s * v[static_cast<Eigen::Index>(k)];

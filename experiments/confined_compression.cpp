@@ -17,16 +17,6 @@ enum WallId : int { bottom, top, ring };
 enum Column : std::size_t { axial_strain, axial_stress, radial_stress, broken };
 enum class Stage { load, unload, reload };
 
-PackingSpec packing_spec(const ConfinedCompressionConfig& c) {
-  return {.shape = ContainerShape::cylinder,
-          .radius_m = c.ring_radius_m,
-          .size_m = Vec3(2 * c.ring_radius_m, 2 * c.ring_radius_m, c.ring_height_m),
-          .num_particles = c.num_particles,
-          .porosity = c.porosity,
-          .size_spread = c.size_spread,
-          .seed = c.packing_seed};
-}
-
 std::vector<Wall> walls(const ConfinedCompressionConfig& c) {
   return {{.direction = Vec3::UnitZ()},
           {.direction = -Vec3::UnitZ(), .position_m = c.ring_height_m * Vec3::UnitZ()},
@@ -181,6 +171,16 @@ std::vector<Field> fields(ConfinedCompressionConfig& c) {
           {"platen_speed_over_wave_speed", &c.platen_speed_over_wave_speed, 1e-6, 1e-2},
           {"max_axial_strain", &c.max_axial_strain, 1e-3, 0.6},
           {"packing_seed", &c.packing_seed, 0, 9e15}};
+}
+
+PackingSpec packing_spec(const ConfinedCompressionConfig& c) {
+  return {.shape = ContainerShape::cylinder,
+          .radius_m = c.ring_radius_m,
+          .size_m = Vec3(2 * c.ring_radius_m, 2 * c.ring_radius_m, c.ring_height_m),
+          .num_particles = c.num_particles,
+          .porosity = c.porosity,
+          .size_spread = c.size_spread,
+          .seed = c.packing_seed};
 }
 
 std::vector<ExperimentResult> run_confined_compression(std::span<const SoilMaterial> members,

@@ -26,6 +26,9 @@ struct ConfinedCompressionConfig {
 
 std::vector<Field> fields(ConfinedCompressionConfig& config);
 
+/// The packing the test begins with.
+PackingSpec packing_spec(const ConfinedCompressionConfig& config);
+
 /// One result per member.
 ///
 /// A greased rigid ring; both platens close, open and close again at constant speed. Stress = mean of

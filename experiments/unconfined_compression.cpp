@@ -19,16 +19,6 @@ std::vector<Wall> platens(const UnconfinedCompressionConfig& config) {
           {.direction = -Vec3::UnitZ(), .position_m = config.specimen_height_m * Vec3::UnitZ()}};
 }
 
-PackingSpec packing_spec(const UnconfinedCompressionConfig& c) {
-  return {.shape = ContainerShape::cylinder,
-          .radius_m = c.specimen_radius_m,
-          .size_m = Vec3(2 * c.specimen_radius_m, 2 * c.specimen_radius_m, c.specimen_height_m),
-          .num_particles = c.num_particles,
-          .porosity = c.porosity,
-          .size_spread = c.size_spread,
-          .seed = c.packing_seed};
-}
-
 /// Platens and grains start with the velocity field of uniform axial straining, so that no shock
 /// runs through the specimen.
 void start_closing(LaneRun& run, const UnconfinedCompressionConfig& config,
@@ -113,6 +103,16 @@ std::vector<Field> fields(UnconfinedCompressionConfig& c) {
           {"max_axial_strain", &c.max_axial_strain, 1e-3, 0.5},
           {"stop_at_peak_share", &c.stop_at_peak_share, 0, 0.99},
           {"packing_seed", &c.packing_seed, 0, 9e15}};
+}
+
+PackingSpec packing_spec(const UnconfinedCompressionConfig& c) {
+  return {.shape = ContainerShape::cylinder,
+          .radius_m = c.specimen_radius_m,
+          .size_m = Vec3(2 * c.specimen_radius_m, 2 * c.specimen_radius_m, c.specimen_height_m),
+          .num_particles = c.num_particles,
+          .porosity = c.porosity,
+          .size_spread = c.size_spread,
+          .seed = c.packing_seed};
 }
 
 std::vector<ExperimentResult> run_unconfined_compression(std::span<const SoilMaterial> members,

@@ -26,6 +26,9 @@ struct UnconfinedCompressionConfig {
 
 std::vector<Field> fields(UnconfinedCompressionConfig& config);
 
+/// The packing the test begins with.
+PackingSpec packing_spec(const UnconfinedCompressionConfig& config);
+
 /// One result per member.
 ///
 /// Stress = mean of both platen forces over the initial area, compression positive; strain = closing

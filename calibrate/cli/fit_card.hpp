@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calibrate/cli/dem_problem.hpp"
+#include "calibrate/fit_options.hpp"
 #include "calibrate/fit_summary.hpp"
 
 namespace tilth {
@@ -50,6 +51,10 @@ struct FittedSet {
   std::vector<Value> parameters;
   std::string provenance_sentence;
   std::string status;
+  std::uint64_t seed = 0;
+  bool preview = false;  ///< of a --quick fit
+  std::vector<std::string> warnings;
+  std::string valid_for, not_calibrated_for;
 };
 
 /// Accepts fit.json or the run folder that holds it. @throws ConfigError with every problem

@@ -290,6 +290,9 @@ FittedSet read_fit_card(const std::filesystem::path& card_or_folder) {
   FittedSet set;
   set.soil_id = card.required_text("name").value_or("");
   set.status = card.text("status", "");
+  set.seed = card.unsigned_integer("seed", 0);
+  set.warnings = card.texts("warnings");
+  if (auto engine = card.object("engine")) set.preview = engine->flag("preview", false);
   if (auto material = card.object("material")) {
     for (const Field& f : fields(set.material))
       if (const auto v = material->required_number(f.name, {f.lower, f.upper}))
@@ -300,9 +303,12 @@ FittedSet read_fit_card(const std::filesystem::path& card_or_folder) {
   }
   if (auto provenance = card.object("provenance"))
     set.provenance_sentence = provenance->text("sentence", "");
-  if (auto scope = card.object("scope"))
+  if (auto scope = card.object("scope")) {
+    set.valid_for = scope->text("valid_for", "");
+    set.not_calibrated_for = scope->text("not_calibrated_for", "");
     if (auto equivalent = scope->object("equivalent_at_radius"))
       set.particle_radius_m = equivalent->number("particle_radius_m", 0.0);
+  }
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   for (JsonObjectReader& p : card.objects("parameters")) {
     const auto interval = [&](const char* key) {

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "calibrate/cli/command_check.hpp"
+#include "calibrate/cli/command_export.hpp"
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_simulate.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -37,11 +38,14 @@ int run_program(int argc, const char* const* argv) {
   FitCommandOptions fit_options;
   CheckOptions check_options;
   SimulateOptions simulate_options;
+  ExportOptions export_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
   CLI::App* simulate = app.add_subcommand("simulate", "run one virtual test");
   add_simulate_options(*simulate, simulate_options);
+  CLI::App* exporting = app.add_subcommand("export", "write a fitted set for other DEM codes");
+  add_export_options(*exporting, export_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -52,6 +56,7 @@ int run_program(int argc, const char* const* argv) {
   try {
     if (check->parsed()) return run_check(check_options);
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
+    if (exporting->parsed()) return run_export(export_options);
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {
     return say_bad_input(e);

@@ -37,6 +37,42 @@ double rms_error(const Emulator& emulator) {
   return std::sqrt(sum / static_cast<double>(fresh.cols()));
 }
 
+// Universal kriging with the emulator's lengths and nugget, by plain inverses.
+struct WrittenOut {
+  double mean;
+  double share;  // variance / s^2
+};
+
+WrittenOut written_out(const Emulator& emulator, const Eigen::MatrixXd& points,
+                       const Eigen::VectorXd& y, const Eigen::VectorXd& at) {
+  const auto matern = [&](const Eigen::VectorXd& u, const Eigen::VectorXd& v) {
+    double product = 1.0;
+    for (Eigen::Index d = 0; d < u.size(); ++d) {
+      const double a = std::sqrt(5.0) * std::abs(u[d] - v[d]) / emulator.lengths()[d];
+      product *= (1.0 + a + a * a / 3.0) * std::exp(-a);
+    }
+    return product;
+  };
+  const Eigen::Index n = points.cols();
+  Eigen::MatrixXd k(n, n);
+  Eigen::VectorXd cross(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) k(i, j) = matern(points.col(i), points.col(j));
+    k(i, i) += emulator.nugget();
+    cross[i] = matern(points.col(i), at);
+  }
+  Eigen::MatrixXd f(n, 1 + at.size());
+  f << Eigen::VectorXd::Ones(n), points.transpose();
+  Eigen::VectorXd f_at(1 + at.size());
+  f_at << 1.0, at;
+  const Eigen::MatrixXd inverse = k.inverse();
+  const Eigen::MatrixXd trend_covariance = (f.transpose() * inverse * f).inverse();
+  const Eigen::VectorXd beta = trend_covariance * f.transpose() * inverse * y;
+  const Eigen::VectorXd h = f_at - f.transpose() * inverse * cross;
+  return {f_at.dot(beta) + cross.dot(inverse * (y - f * beta)),
+          1.0 - cross.dot(inverse * cross) + h.dot(trend_covariance * h)};
+}
+
 }  // namespace
 
 TEST_CASE("Emulator: exact data are interpolated and new points predicted",
@@ -79,40 +115,38 @@ TEST_CASE("Emulator: noise goes to the nugget, not to the curve", "[calibrate][e
 }
 
 TEST_CASE("Emulator: the closed leave-one-out equals leaving one out", "[calibrate][emulator]") {
-  const Eigen::Index n = 24;
-  const Eigen::MatrixXd points = shifted_sobol_points(static_cast<int>(n), 3, 5);
+  const Eigen::MatrixXd points = shifted_sobol_points(24, 3, 5);
   const Eigen::VectorXd y = values_at(points, 0.1);
   const Emulator emulator(points, y, {});
-  // Universal kriging written out, with the same lengths and nugget.
-  Eigen::MatrixXd k(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      k(i, j) = i == j ? 1.0 + emulator.nugget() : 1.0;
-      for (Eigen::Index d = 0; d < 3 && i != j; ++d) {
-        const double a =
-            std::sqrt(5.0) * std::abs(points(d, i) - points(d, j)) / emulator.lengths()[d];
-        k(i, j) *= (1.0 + a + a * a / 3.0) * std::exp(-a);
-      }
-    }
-  }
-  Eigen::MatrixXd trend(n, 4);
-  trend << Eigen::VectorXd::Ones(n), points.transpose();
   const LeaveOneOut closed = emulator.leave_one_out();
-  for (Eigen::Index left = 0; left < n; ++left) {
+  std::vector<double> scale;  // what should be the same s^2 for every point
+  for (Eigen::Index left = 0; left < points.cols(); ++left) {
     std::vector<Eigen::Index> others;
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
       if (i != left) others.push_back(i);
     }
-    const Eigen::MatrixXd inverse = Eigen::MatrixXd(k(others, others)).inverse();
-    const Eigen::MatrixXd f = trend(others, Eigen::all);
-    const Eigen::VectorXd z = y(others);
-    const Eigen::VectorXd beta =
-        (f.transpose() * inverse * f).inverse() * f.transpose() * inverse * z;
-    const Eigen::VectorXd cross = k(others, left);
-    const double mean = trend.row(left).dot(beta) + cross.dot(inverse * (z - f * beta));
+    const WrittenOut without =
+        written_out(emulator, points(Eigen::all, others), y(others), points.col(left));
     // 1e-7: rounding times the condition of K, which the nugget keeps below 1e8.
-    REQUIRE(std::abs(closed.residuals[left] - (y[left] - mean)) < 1e-7);
+    REQUIRE(std::abs(closed.residuals[left] - (y[left] - without.mean)) < 1e-7);
+    scale.push_back(std::pow(closed.standard_deviations[left], 2) /
+                    (without.share + emulator.nugget()));
+    REQUIRE(std::abs(scale.back() / scale.front() - 1.0) < 1e-6);  // as above
   }
+}
+
+TEST_CASE("Emulator: a prediction is universal kriging written out", "[calibrate][emulator]") {
+  const Eigen::MatrixXd points = shifted_sobol_points(12, 3, 5);
+  const Eigen::VectorXd y = values_at(points, 0.1);
+  const Emulator emulator(points, y, {});
+  const Eigen::Vector3d here(0.4, 0.5, 0.6);
+  const Eigen::Vector3d corner(1.0, 0.0, 1.0);  // where the trend is least known
+  const WrittenOut at_here = written_out(emulator, points, y, here);
+  const WrittenOut at_corner = written_out(emulator, points, y, corner);
+  // 1e-7 as above; a ratio of variances, because s^2 is private.
+  REQUIRE(std::abs(emulator.predict(corner).mean - at_corner.mean) < 1e-7);
+  REQUIRE(std::abs(emulator.predict(corner).variance / emulator.predict(here).variance -
+                   at_corner.share / at_here.share) < 1e-6 * at_corner.share / at_here.share);
 }
 
 TEST_CASE("Emulator: its uncertainty vanishes at the data and grows away from them",

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the Tilth authors
 #include <bit>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "calibrate/fit.hpp"
@@ -60,6 +61,20 @@ TEST_CASE("Fit: a region where the model fails is avoided", "[calibrate][fit]") 
   const FitSummary summary = fit_soil(failing(simulator_of(soil_formula), stiff));
   require_recovered(summary);
   REQUIRE(summary.failures.size() > 3);
+}
+
+TEST_CASE("Fit: the search does not run again and again into a region known to fail",
+          "[calibrate][fit]") {
+  // A slab of a fifth of the cube with the best point in its middle.
+  const auto near_best = [](const Eigen::VectorXd& p) {
+    return std::abs(std::log(p[0] / soil_truth()[0])) < 0.5;
+  };
+  const FitSummary summary = fit_soil(failing(simulator_of(soil_formula), near_best));
+  REQUIRE(summary.is_usable());
+  for (const StageCount& stage : summary.stages) {
+    // Of 18 runs 6 fail; without looking at the nearest known run 10 do.
+    if (stage.stage == "search") REQUIRE(stage.num_failed <= 6);
+  }
 }
 
 TEST_CASE("Fit: the optimum at the edge of a failing region is fitted with one-sided secants",

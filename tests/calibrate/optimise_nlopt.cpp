@@ -63,9 +63,14 @@ TEST_CASE("NLopt: the best point survives an evaluation limit, NaN regions and a
   const auto holed = [](const Eigen::VectorXd& x) {
     return x[0] > 5.0 ? std::numeric_limits<double>::quiet_NaN() : branin(x);
   };
-  const NloptResult around =
-      minimise_with_nlopt(holed, lower, upper, start, {NloptAlgorithm::crs2, 3000, 1e-7, 1});
-  REQUIRE_THAT(around.value, WithinAbs(5.0 / (4.0 * pi), 1e-3));  // as above
+  for (const NloptAlgorithm algorithm :
+       {NloptAlgorithm::direct_l, NloptAlgorithm::crs2, NloptAlgorithm::isres,
+        NloptAlgorithm::sbplx, NloptAlgorithm::bobyqa}) {
+    const NloptResult around =
+        minimise_with_nlopt(holed, lower, upper, start, {algorithm, 5000, 1e-7, 1});
+    INFO(static_cast<int>(algorithm) << ": " << around.message);
+    REQUIRE_THAT(around.value, WithinAbs(5.0 / (4.0 * pi), 1e-3));  // as above
+  }
 
   const NloptResult refused = minimise_with_nlopt(holed, lower, upper, Eigen::Vector2d(9.0, 1.0),
                                                   {NloptAlgorithm::crs2, 100, 1e-7, 1});

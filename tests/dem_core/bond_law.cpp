@@ -65,8 +65,7 @@ TEST_CASE("bond law: stiffness is that of a cylinder of elastic material", "[dem
   CHECK_THAT(bent.moment_on_a_N_m.y(), WithinRel(2e6 * s.i_m4 / s.length_m * 1e-8, 1e-13));
   const BondResponse twisted = bond_force_law(
       d.law, d.geometry, dt_s, {.distance_m = 9e-3, .spin_b_rad_per_s = {0, 0, 1e-2}}, {});
-  CHECK_THAT(twisted.moment_on_a_N_m.z(),
-             WithinRel(2e6 / 2.5 * s.j_m4 / s.length_m * 1e-8, 1e-13));
+  CHECK_THAT(twisted.moment_on_a_N_m.z(), WithinRel(2e6 / 2.5 * s.j_m4 / s.length_m * 1e-8, 1e-13));
 }
 
 TEST_CASE("bond law: pulls when stretched, pushes when shortened", "[dem_core][bond]") {
@@ -119,7 +118,8 @@ TEST_CASE("bond law: torsion adds beta |M| R / J to the shear, whatever its sens
     CHECK(d.survives({.twisting_N_m = sense * limit_N_m * below}));
     CHECK_FALSE(d.survives({.twisting_N_m = sense * limit_N_m * above}));
     const double shear_N = 0.3 * 2e4 * s.area_m2;
-    CHECK(d.survives({.shear_N = {shear_N, 0, 0}, .twisting_N_m = 0.7 * sense * limit_N_m * below}));
+    CHECK(
+        d.survives({.shear_N = {shear_N, 0, 0}, .twisting_N_m = 0.7 * sense * limit_N_m * below}));
     CHECK_FALSE(
         d.survives({.shear_N = {shear_N, 0, 0}, .twisting_N_m = 0.7 * sense * limit_N_m * above}));
   }
@@ -136,8 +136,8 @@ TEST_CASE("bond law: a broken bond carries nothing and stays broken", "[dem_core
 }
 
 TEST_CASE("bond law: stored vectors turn with the mean spin about the normal", "[dem_core][bond]") {
-  const BondMotion m{.distance_m = 9e-3, .spin_a_rad_per_s = {0, 0, 10},
-                     .spin_b_rad_per_s = {0, 0, 10}};
+  const BondMotion m{
+      .distance_m = 9e-3, .spin_a_rad_per_s = {0, 0, 10}, .spin_b_rad_per_s = {0, 0, 10}};
   const Dimer d;
   const BondResponse r = bond_force_law(d.law, d.geometry, 1e-4, m, {.shear_N = {1e-3, 0, 0}});
   // bond.md (5): x + w dt z cross x with w dt = 1e-3
@@ -147,8 +147,12 @@ TEST_CASE("bond law: stored vectors turn with the mean spin about the normal", "
 
 TEST_CASE("bond material: every bad number is named", "[dem_core][bond]") {
   CHECK(problems(soil_bond()).empty());
-  BondMaterial bad{.modulus_Pa = -1, .stiffness_ratio = 0, .tensile_strength_Pa = -1,
-                   .cohesion_Pa = -1, .friction_angle_rad = 2, .radius_multiplier = 0,
+  BondMaterial bad{.modulus_Pa = -1,
+                   .stiffness_ratio = 0,
+                   .tensile_strength_Pa = -1,
+                   .cohesion_Pa = -1,
+                   .friction_angle_rad = 2,
+                   .radius_multiplier = 0,
                    .moment_contribution = 1.5};
   CHECK(problems(bad).size() == 7);
   bad = soil_bond();

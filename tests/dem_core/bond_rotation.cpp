@@ -10,9 +10,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -25,13 +25,19 @@ struct Stored {
 /// One full turn of a bond about `axis` in num_steps, both grains turning with it.
 Stored after_one_turn(const Vec3& axis, const Stored& start, int num_steps) {
   BondMemory memory{.shear_N = start.shear_N, .bending_N_m = start.bending_N_m};
-  const BondLaw law{.normal_scale = 1, .shear_scale = 1, .bending_scale = 1, .twisting_scale = 1,
-                    .tensile_limit = 1e9, .cohesion_limit = 1e9};
+  const BondLaw law{.normal_scale = 1,
+                    .shear_scale = 1,
+                    .bending_scale = 1,
+                    .twisting_scale = 1,
+                    .tensile_limit = 1e9,
+                    .cohesion_limit = 1e9};
   const BondGeometry geometry = bond_from_numbers(0, 1, 1.0);
   const double dt_s = 1.0 / num_steps;
   for (int n = 1; n <= num_steps; ++n) {
     const Vec3 normal = Eigen::AngleAxisd(turn * n / num_steps, axis) * Vec3::UnitX();
-    const BondMotion motion{.normal = normal, .distance_m = 1, .spin_a_rad_per_s = turn * axis,
+    const BondMotion motion{.normal = normal,
+                            .distance_m = 1,
+                            .spin_a_rad_per_s = turn * axis,
                             .spin_b_rad_per_s = turn * axis};
     memory = bond_force_law(law, geometry, dt_s, motion, memory).memory;
   }
@@ -66,8 +72,8 @@ TEST_CASE("bond rotation: a spinning dimer keeps its stored shear across the bon
     scene.sphere({1, 0, 0}, 1, mass_kg);
     scene.bond(0, 1);
     scene.model.contact_beside_bond = false;
-    scene.law().bond = {.normal_scale = 1e11, .shear_scale = 1e-9, .tensile_limit = 1e30,
-                        .cohesion_limit = 1e30};
+    scene.law().bond = {
+        .normal_scale = 1e11, .shear_scale = 1e-9, .tensile_limit = 1e30, .cohesion_limit = 1e30};
     scene.law().dt_s = 1.0 / num_steps;
     scene.begin();
     for (int i = 0; i < 2; ++i) {

@@ -7,9 +7,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
-using tilth::testing::fixed_mass_kg;
 using Catch::Matchers::WithinAbs;
+using tilth::testing::fixed_mass_kg;
+using tilth::testing::Scene;
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinAbs;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -38,8 +38,8 @@ TEST_CASE("collision: head-on restitution equals e at any impact speed", "[dem_c
   for (const double e : {0.2, 0.5, 0.8, 0.95, 1.0})
     for (const double speed_m_per_s : {1e-6, 0.1, 10.0}) {
       CAPTURE(e, speed_m_per_s);
-      // 8e-3: with 200 steps per contact semi-implicit Euler errs by at most 7.1e-3 (at e = 0.5)
-      CHECK_THAT(measured_restitution(e, speed_m_per_s, 200), WithinAbs(e, 8e-3));
+      // 2e-3: with 200 steps per contact semi-implicit Euler errs by at most 1.7e-3 (at e = 0.5)
+      CHECK_THAT(measured_restitution(e, speed_m_per_s, 200), WithinAbs(e, 2e-3));
     }
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("collision: the restitution error falls with the first power of the st
     const double fine = std::abs(measured_restitution(e, 1.0, 6400) - e);
     const double order = std::log2(coarse / fine) / 6;
     CAPTURE(e, coarse, fine);
-    // 0.25: the contact ends between two steps, so the last force is early or late by up to a step
-    CHECK_THAT(order, WithinAbs(1.0, 0.25));
+    // 0.1: the contact ends between two steps, which blurs single ratios; measured 1.002 to 1.004
+    CHECK_THAT(order, WithinAbs(1.0, 0.1));
   }
 }

@@ -26,10 +26,12 @@ TEST_CASE("contact law: the normal force is k d + c ddot, attractive when openin
           "[dem_core][contact]") {
   const ContactConstants c = soil_contact();
   // contact.md (1); 1e-15: two roundings
-  CHECK_THAT(contact_law(c, {.overlap_m = 1e-3, .overlap_rate_m_per_s = 0.2}, Vec3::Zero()).normal_N,
-             WithinRel(206.0, 1e-15));
-  CHECK_THAT(contact_law(c, {.overlap_m = 1e-3, .overlap_rate_m_per_s = -10}, Vec3::Zero()).normal_N,
-             WithinRel(-100.0, 1e-15));
+  CHECK_THAT(
+      contact_law(c, {.overlap_m = 1e-3, .overlap_rate_m_per_s = 0.2}, Vec3::Zero()).normal_N,
+      WithinRel(206.0, 1e-15));
+  CHECK_THAT(
+      contact_law(c, {.overlap_m = 1e-3, .overlap_rate_m_per_s = -10}, Vec3::Zero()).normal_N,
+      WithinRel(-100.0, 1e-15));
 }
 
 TEST_CASE("contact law: apart, every force is zero and the spring is forgotten",
@@ -63,8 +65,8 @@ TEST_CASE("contact law: a slipping contact carries friction times the normal for
 
 TEST_CASE("contact law: without pressure there is no friction", "[dem_core][contact]") {
   // a contact pulled back by its dashpot (F_n < 0) cannot carry shear: contact.md (4)
-  const ContactMotion m{.overlap_m = 1e-4, .overlap_rate_m_per_s = -10,
-                        .sliding_velocity_m_per_s = {1, 0, 0}};
+  const ContactMotion m{
+      .overlap_m = 1e-4, .overlap_rate_m_per_s = -10, .sliding_velocity_m_per_s = {1, 0, 0}};
   const ContactResponse r = contact_law(soil_contact(), m, Vec3::Zero());
   CHECK(r.normal_N < 0);
   CHECK(r.tangential_on_a_N.norm() == 0.0);

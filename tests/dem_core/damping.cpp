@@ -7,8 +7,8 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 TEST_CASE("damping: a loaded spring keeps sqrt((1 - alpha) / (1 + alpha)) per half swing",
           "[dem_core][damping]") {

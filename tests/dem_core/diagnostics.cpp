@@ -9,10 +9,11 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
-TEST_CASE("diagnostics: energies of two pressed, sliding, turning grains", "[dem_core][diagnostics]") {
+TEST_CASE("diagnostics: energies of two pressed, sliding, turning grains",
+          "[dem_core][diagnostics]") {
   Scene scene;
   scene.sphere({0, 0, 5}, 1, 2);
   scene.sphere({1.98, 0, 5}, 1, 3);
@@ -32,23 +33,27 @@ TEST_CASE("diagnostics: energies of two pressed, sliding, turning grains", "[dem
   CHECK(e.walls_J == 0.0);
 }
 
-TEST_CASE("diagnostics: energy of a strained bond and of a wall contact", "[dem_core][diagnostics]") {
+TEST_CASE("diagnostics: energy of a strained bond and of a wall contact",
+          "[dem_core][diagnostics]") {
   Scene scene;
   scene.model.contact_beside_bond = false;
   scene.sphere({0, 0, 0.9});
   scene.sphere({1.98, 0, 4});
   scene.bond(0, 1).rest_length_m += 0.01;
   scene.plane(Vec3::UnitZ());
-  scene.law().bond = {.normal_scale = 100, .shear_scale = 50, .bending_scale = 20,
-                      .twisting_scale = 10, .tensile_limit = 1e9, .cohesion_limit = 1e9};
+  scene.law().bond = {.normal_scale = 100,
+                      .shear_scale = 50,
+                      .bending_scale = 20,
+                      .twisting_scale = 10,
+                      .tensile_limit = 1e9,
+                      .cohesion_limit = 1e9};
   scene.law().dt_s = 1e-9;
   scene.begin();
   scene.run(1);
   for (std::size_t k = 0; k < 7; ++k) scene.state.bonds[k] = 1.0 + static_cast<double>(k);
   const Energy e = scene.energy_now();
   // shear (1, 2, 3), bending (4, 5, 6), twist 7
-  CHECK_THAT(e.bonds_J,
-             WithinRel(0.5 * (100 * 1e-4 + 14.0 / 50 + 77.0 / 20 + 49.0 / 10), 1e-9));
+  CHECK_THAT(e.bonds_J, WithinRel(0.5 * (100 * 1e-4 + 14.0 / 50 + 77.0 / 20 + 49.0 / 10), 1e-9));
   CHECK_THAT(e.walls_J, WithinRel(0.5 * 1e4 * 0.01, 1e-6));
   scene.state.bonds[7] = 0;
   CHECK(scene.energy_now().bonds_J == 0.0);

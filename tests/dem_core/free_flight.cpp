@@ -6,9 +6,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 TEST_CASE("free flight: free fall is the discrete parabola", "[dem_core][integration]") {
   for (const int n : {1, 10, 1000}) {
@@ -59,7 +59,8 @@ TEST_CASE("free flight: local damping falls with (1 - alpha) g and rises with (1
   CHECK_THAT(scene.state.velocity_m_per_s(1).z(), WithinRel(10 - 1.3e-2 * 500, 1e-12));
 }
 
-TEST_CASE("free flight: a model without grains or with one takes steps", "[dem_core][integration]") {
+TEST_CASE("free flight: a model without grains or with one takes steps",
+          "[dem_core][integration]") {
   Scene none;
   none.begin();
   none.run(3);

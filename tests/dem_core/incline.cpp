@@ -7,9 +7,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -42,8 +42,12 @@ double block_acceleration(double angle_rad, double friction, double& travelled_m
   scene.bond(0, 1);
   scene.bond(0, 2);
   scene.bond(1, 2);
-  scene.law().bond = {.normal_scale = 1e5, .shear_scale = 1e5, .bending_scale = 1e5,
-                      .twisting_scale = 1e5, .tensile_limit = 1e9, .cohesion_limit = 1e9};
+  scene.law().bond = {.normal_scale = 1e5,
+                      .shear_scale = 1e5,
+                      .bending_scale = 1e5,
+                      .twisting_scale = 1e5,
+                      .tensile_limit = 1e9,
+                      .cohesion_limit = 1e9};
   scene.begin();
   scene.run(5000);
   const double early = scene.state.velocity_m_per_s(0).x();
@@ -62,8 +66,7 @@ TEST_CASE("incline: a block slides where tan(angle) exceeds the friction and sti
     const double angle_rad = std::atan(ratio * friction);
     double travelled_m = 0;
     const double a = block_acceleration(angle_rad, friction, travelled_m);
-    const double closed_form =
-        std::max(0.0, std::sin(angle_rad) - friction * std::cos(angle_rad));
+    const double closed_form = std::max(0.0, std::sin(angle_rad) - friction * std::cos(angle_rad));
     CAPTURE(ratio, travelled_m);
     // 1e-6 g: what the damped rocking of the block leaves after 5 s
     CHECK_THAT(a, WithinAbs(closed_form, 1e-6));
@@ -80,7 +83,8 @@ TEST_CASE("incline: a sphere without slip accelerates with 5/7 g sin(angle)",
     scene.sphere({0, 0, z});
     scene.begin();
     scene.run(10000);
-    // 5/7 for d = r; the overlap makes it 1 / (1 + 0.4 r^2 / d^2). 1e-9: the damped transient is gone
+    // 5/7 for d = r; the overlap makes it 1 / (1 + 0.4 r^2 / d^2). 1e-9: the damped transient is
+    // gone
     const double a = std::sin(angle_rad) / (1 + inertia_ratio(z));
     CAPTURE(angle_rad);
     CHECK_THAT(scene.state.velocity_m_per_s(0).x(), WithinRel(10 * a, 1e-9));

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The same collision seen from elsewhere, turned, from a moving frame, and with the grains renumbered.
+// The same collision seen from elsewhere, turned, from a moving frame, and with the grains
+// renumbered.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,8 +10,8 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using tilth::testing::add_bonded_cluster;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -45,9 +46,15 @@ Outcome collide(Frame frame) {
   law.normal_damping = 0.3;
   law.tangential_damping = 0.1;
   law.dt_s = 5e-4;
-  law.bond = {.normal_scale = 1e4, .shear_scale = 5e3, .bending_scale = 2e3, .twisting_scale = 1e3,
-              .tensile_limit = 300, .cohesion_limit = 150, .tan_friction = 0.3,
-              .bending_in_tension = 0.5, .twisting_in_shear = 0.5};
+  law.bond = {.normal_scale = 1e4,
+              .shear_scale = 5e3,
+              .bending_scale = 2e3,
+              .twisting_scale = 1e3,
+              .tensile_limit = 300,
+              .cohesion_limit = 150,
+              .tan_friction = 0.3,
+              .bending_in_tension = 0.5,
+              .twisting_in_shear = 0.5};
   std::vector<int> place(num_grains);
   for (int k = 0; k < num_grains; ++k) {
     const auto i = static_cast<std::size_t>(frame.order[static_cast<std::size_t>(k)]);
@@ -78,7 +85,8 @@ Outcome collide(Frame frame) {
     out.position_m.push_back(frame.turn.transpose() * (scene.state.position_m(k) - drift_m));
     out.velocity_m_per_s.push_back(frame.turn.transpose() *
                                    (scene.state.velocity_m_per_s(k) - frame.velocity_m_per_s));
-    out.spin_rad_per_s.push_back(frame.turn.transpose() * scene.state.angular_velocity_rad_per_s(k));
+    out.spin_rad_per_s.push_back(frame.turn.transpose() *
+                                 scene.state.angular_velocity_rad_per_s(k));
   }
   out.num_held = num_bonds_held(scene.model, scene.state);
   return out;

@@ -166,6 +166,28 @@ TEST_CASE("lanes: servo plates, moving walls and slipping grains have the same b
   check_all_lane_counts(pressed_packing);
 }
 
+TEST_CASE("lanes: a lane frozen by hand stands still and the others do not notice",
+          "[dem_core][lanes]") {
+  if (!can_run(4)) return;
+  const std::vector<int> members = {0, 1, 2, 3};
+  Scene all = pressed_packing(members);
+  Scene some = pressed_packing(members);
+  some.state.active[1] = 0;
+  model_changed(some.workspace);
+  const std::vector<double> motion = one_lane(some.state.motion, 4, 1);
+  const std::vector<double> force = one_lane(some.state.wall_force, 4, 1);
+  const double time_s = some.state.time_s[1];
+  all.run(500);
+  some.run(500);
+  CHECK(one_lane(some.state.motion, 4, 1) == motion);
+  CHECK(one_lane(some.state.wall_force, 4, 1) == force);
+  CHECK(some.state.time_s[1] == time_s);
+  for (const int lane : {0, 2, 3}) {
+    CHECK(one_lane(some.state.motion, 4, lane) == one_lane(all.state.motion, 4, lane));
+    CHECK(one_lane(some.state.wall_force, 4, lane) == one_lane(all.state.wall_force, 4, lane));
+  }
+}
+
 TEST_CASE("lanes: the widest lane count is one that runs, and one lane always does",
           "[dem_core][lanes]") {
   CHECK(lanes_supported(1));

@@ -11,10 +11,10 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -63,6 +63,25 @@ TEST_CASE("model: an initial overlap with a reference distance carries no force"
   CHECK(push_N(scene) == 0.0);
   scene.model.references[0].distance_m = 1.5 - 0.004;
   CHECK_THAT(push_N(scene), WithinRel(1e4 * 0.006, 1e-9));
+}
+
+TEST_CASE("model: unequal grains turn like gears about their contact point", "[dem_core][model]") {
+  Scene scene = two_grains();
+  scene.law().friction = 1;
+  scene.law().dt_s = 1e-3;
+  scene.begin();
+  // arms (l + r_a - r_b) / 2 = 0.995 m and 0.495 m: without sliding, no tangential force
+  scene.state.set_angular_velocity_rad_per_s(0, {0, 0, 0.495});
+  scene.state.set_angular_velocity_rad_per_s(1, {0, 0, -0.995});
+  scene.run(1);
+  CHECK_THAT(scene.state.velocity_m_per_s(1).y(), WithinAbs(0, 1e-15));
+  // turning the same way they slide by 2 x 0.995 x 0.495 m/s: F = k_s dt v
+  scene.begin();
+  scene.state.set_angular_velocity_rad_per_s(0, {0, 0, 0.495});
+  scene.state.set_angular_velocity_rad_per_s(1, {0, 0, 0.995});
+  scene.run(1);
+  const double force_N = 5e3 * 1e-3 * 2 * 0.995 * 0.495;
+  CHECK_THAT(scene.state.velocity_m_per_s(1).y() * 0.5 / 1e-3, WithinRel(force_N, 1e-9));
 }
 
 TEST_CASE("model: the damping number is 2 zeta of the oscillator that rebounds with e",

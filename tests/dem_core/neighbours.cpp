@@ -12,8 +12,8 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using tilth::testing::scattered_points;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -58,8 +58,9 @@ Scene random_grains(int n, double size_m, unsigned seed) {
 void place(Scene& scene, int particle, int lane, const Vec3& x) {
   const auto w = static_cast<std::size_t>(scene.state.num_lanes);
   for (std::size_t k = 0; k < 3; ++k)
-    scene.state.motion[(static_cast<std::size_t>(particle) * 9 + k) * w +
-                       static_cast<std::size_t>(lane)] = x[static_cast<Eigen::Index>(k)];
+    scene.state
+        .motion[(static_cast<std::size_t>(particle) * 9 + k) * w + static_cast<std::size_t>(lane)] =
+        x[static_cast<Eigen::Index>(k)];
 }
 
 }  // namespace
@@ -140,8 +141,8 @@ TEST_CASE("neighbours: a short list gives the bits of a long one", "[dem_core][n
     scene.law().normal_damping = 0.3;
     scene.law().dt_s = 1e-3;
     const double size_m = 8;
-    for (const Vec3& p : scattered_points(60, size_m - 2, 1.9, 10))
-      scene.sphere(p + Vec3::Constant(1));
+    for (const Vec3& p : scattered_points(40, size_m - 2, 1.6, 10))
+      scene.sphere(p + Vec3::Constant(1), 0.8);
     for (int axis = 0; axis < 3; ++axis) {
       scene.plane(Vec3::Unit(axis));
       scene.plane(-Vec3::Unit(axis), Vec3::Constant(size_m));

@@ -81,7 +81,8 @@ TEST_CASE("packing store: whatever influences a packing is in its key", "[dem_co
   CHECK_FALSE(changed([](PackingSpec& s) { s.size_m.x() *= 2; }));  // a cylinder has no x size
 }
 
-TEST_CASE("packing store: a damaged or foreign file is ignored and replaced", "[dem_core][packing]") {
+TEST_CASE("packing store: a damaged or foreign file is ignored and replaced",
+          "[dem_core][packing]") {
   const TemporaryFolder folder;
   const Packing made = make_packing(tiny());
   PackingStore(folder.path).get(tiny());

@@ -6,9 +6,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
+using tilth::testing::Scene;
 
 TEST_CASE("settled bed keeps the coordination number of the reference", "[dem_core][reference]") {
   Scene scene;
@@ -34,7 +34,8 @@ TEST_CASE("settled bed keeps the coordination number of the reference", "[dem_co
   }
   scene.begin();
   scene.run(2000);
-  // 0.05: the table has two decimals and a bed that was handed over settles by a few contacts of 10 740
+  // 0.05: the table has two decimals and a bed that was handed over settles by a few contacts of 10
+  // 740
   CHECK_THAT(coordination(scene.model, scene.state), WithinAbs(5.37, 0.05));
   // at rest: the floor (wall 4) carries the weight; 1e-3: what still moves
   double weight_N = 0;

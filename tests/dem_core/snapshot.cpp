@@ -6,22 +6,22 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <fstream>
+#include <string_view>
 
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
-using tilth::testing::add_bonded_cluster;
 using Catch::Matchers::Contains;
+using tilth::testing::add_bonded_cluster;
+using tilth::testing::Scene;
 
 namespace {
 
 /// A folder that goes away with the test.
 struct TemporaryFolder {
-  std::filesystem::path path = std::filesystem::temp_directory_path() /
-                               ("tilth_snapshot_" + std::to_string(::getpid()));
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("tilth_snapshot_" + std::to_string(::getpid()));
   TemporaryFolder() { std::filesystem::create_directories(path); }
   ~TemporaryFolder() { std::filesystem::remove_all(path); }
 };
@@ -29,15 +29,22 @@ struct TemporaryFolder {
 /// Bonded clusters in a box under a servo plate: bonds break, grains slip.
 Scene pressed_clusters() {
   Scene scene;
+  scene.model.contact_beside_bond = false;
   scene.model.gravity_m_per_s2 = {0.5, 0, -5};
   LaneLaw& law = scene.law();
   law.friction = 0.4;
   law.wall_friction = 0.2;
   law.normal_damping = 0.3;
   law.dt_s = 1e-3;
-  law.bond = {.normal_scale = 1e4, .shear_scale = 5e3, .bending_scale = 2e3, .twisting_scale = 1e3,
-              .tensile_limit = 100, .cohesion_limit = 50, .tan_friction = 0.3,
-              .bending_in_tension = 0.5, .twisting_in_shear = 0.5};
+  law.bond = {.normal_scale = 1e4,
+              .shear_scale = 5e3,
+              .bending_scale = 2e3,
+              .twisting_scale = 1e3,
+              .tensile_limit = 300,
+              .cohesion_limit = 150,
+              .tan_friction = 0.3,
+              .bending_in_tension = 0.5,
+              .twisting_in_shear = 0.5};
   add_bonded_cluster(scene, {0, 0, 3}, 12, 2.6, 1);
   add_bonded_cluster(scene, {0, 0, 8}, 12, 2.6, 2);
   for (int axis = 0; axis < 2; ++axis) {
@@ -47,9 +54,8 @@ Scene pressed_clusters() {
   scene.plane(Vec3::UnitZ());
   const int lid = scene.plane(-Vec3::UnitZ(), {0, 0, 12});
   scene.begin();
-  scene.state.drive(lid, 0) = {.servo_gain_m_per_N_s = 1e-2,
-                               .target_force_N = 300,
-                               .max_speed_m_per_s = 2};
+  scene.state.drive(lid, 0) = {
+      .servo_gain_m_per_N_s = 1e-2, .target_force_N = 300, .max_speed_m_per_s = 2};
   return scene;
 }
 
@@ -108,8 +114,8 @@ TEST_CASE("snapshot: damaged files are refused with their name", "[dem_core][sna
   save_snapshot(scene.state, file);
   const std::string good = read_all(file);
   CHECK_THROWS_WITH(load_snapshot(folder.path / "absent.state"), Contains("absent.state"));
-  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{21}, good.size() / 2,
-                                   good.size() - 1}) {
+  for (const std::size_t length :
+       {std::size_t{0}, std::size_t{7}, std::size_t{21}, good.size() / 2, good.size() - 1}) {
     write_all(file, good.substr(0, length));
     CAPTURE(length);
     CHECK_THROWS_WITH(load_snapshot(file), Contains("bad.state"));
@@ -118,10 +124,10 @@ TEST_CASE("snapshot: damaged files are refused with their name", "[dem_core][sna
   foreign[0] = 'T';
   write_all(file, foreign);
   CHECK_THROWS_WITH(load_snapshot(file), Contains("not a tilth snapshot"));
-  std::string absurd = good;  // the count of the first array
-  const std::size_t count_at = 8 + sizeof(int) + 8 + 8 + 6 * 7 * 8;
-  std::uint64_t huge = ~std::uint64_t{0};
-  std::memcpy(absurd.data() + count_at, &huge, sizeof huge);
+  std::string absurd = good;
+  const std::uint64_t count = scene.state.motion.size();
+  const std::string_view count_bytes(reinterpret_cast<const char*>(&count), sizeof count);
+  absurd.replace(absurd.find(count_bytes), sizeof count, sizeof count, '\xff');
   write_all(file, absurd);
   CHECK_THROWS_WITH(load_snapshot(file), Contains("damaged"));
   write_all(file, good + "x");

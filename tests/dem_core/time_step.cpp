@@ -16,9 +16,9 @@
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
-using tilth::testing::Scene;
-using tilth::testing::add_bonded_cluster;
 using Catch::Matchers::WithinRel;
+using tilth::testing::add_bonded_cluster;
+using tilth::testing::Scene;
 
 namespace {
 
@@ -108,7 +108,10 @@ Assembly assemble(const Scene& scene) {
   const auto joint_of = [&](int i, int j) {
     const Vec3 branch = scene.state.position_m(j) - scene.state.position_m(i);
     const double d = branch.norm();
-    return Joint{.i = i, .j = j, .normal = branch / d, .arm_i_m = 0.5 * (d + r(i) - r(j)),
+    return Joint{.i = i,
+                 .j = j,
+                 .normal = branch / d,
+                 .arm_i_m = 0.5 * (d + r(i) - r(j)),
                  .arm_j_m = 0.5 * (d + r(j) - r(i))};
   };
   for (int i = 0; i < n; ++i)
@@ -137,8 +140,11 @@ Assembly assemble(const Scene& scene) {
       const bool plane = w.shape == WallShape::plane;
       const double distance_m = plane ? offset.dot(w.direction) : w.radius_m - radial.norm();
       if (distance_m >= r(i)) continue;
-      Joint joint{.i = i, .normal = plane ? Vec3(-w.direction) : Vec3(radial.normalized()),
-                  .arm_i_m = distance_m, .kn = kn, .ks = ks};
+      Joint joint{.i = i,
+                  .normal = plane ? Vec3(-w.direction) : Vec3(radial.normalized()),
+                  .arm_i_m = distance_m,
+                  .kn = kn,
+                  .ks = ks};
       joint.cn = contact_dashpot(model, law.normal_damping, m(i), kn);
       joint.ct = contact_dashpot(model, law.tangential_damping, m(i), kn);
       add_joint(a, model, joint);
@@ -150,8 +156,11 @@ Assembly assemble(const Scene& scene) {
 Scene random_assembly(unsigned seed) {
   Scene scene;
   scene.law().shear_stiffness_ratio = 0.3 + 0.1 * seed;
-  scene.law().bond = {.normal_scale = 5e3 * (1 + seed % 3), .shear_scale = 3e3,
-                      .bending_scale = 2e3, .twisting_scale = 1e3, .tensile_limit = 1e9,
+  scene.law().bond = {.normal_scale = 5e3 * (1 + seed % 3),
+                      .shear_scale = 3e3,
+                      .bending_scale = 2e3,
+                      .twisting_scale = 1e3,
+                      .tensile_limit = 1e9,
                       .cohesion_limit = 1e9};
   add_bonded_cluster(scene, {0, 0, 2.5}, 12, 2.2, seed);
   double low_m = 1e9, wide_m = 0;
@@ -181,7 +190,8 @@ TEST_CASE("time step: a chain of spheres has omega = 2 sqrt(k / m)", "[dem_core]
   // dt = 2 / omega = sqrt(m / k); the library's bound is exact for the endless chain
   CHECK_THAT(stable_time_step_s(scene.model, scene.state), WithinRel(0.05, 1e-12));
   // the free chain of N: omega = 2 sqrt(k / m) cos(pi / 2N)
-  CHECK_THAT(assemble(scene).exact_limit_s(), WithinRel(0.05 / std::cos(std::numbers::pi / 40), 1e-9));
+  CHECK_THAT(assemble(scene).exact_limit_s(),
+             WithinRel(0.05 / std::cos(std::numbers::pi / 40), 1e-9));
 }
 
 TEST_CASE("time step: the bound is never above the exact limit, and above half of it",
@@ -202,7 +212,8 @@ TEST_CASE("time step: the bound holds with dashpots of both kinds", "[dem_core][
       for (const double tangential : {0.0, 0.5}) {
         Scene scene = random_assembly(2);
         scene.model.damping_kind = kind;
-        const double unit = kind == DampingKind::rate ? 100.0 : 1.0;  // sqrt(k / m) = 100 per second
+        const double unit =
+            kind == DampingKind::rate ? 100.0 : 1.0;  // sqrt(k / m) = 100 per second
         scene.law().normal_damping = strength * unit;
         scene.law().tangential_damping = tangential * strength * unit;
         const double ratio =
@@ -246,8 +257,12 @@ TEST_CASE("time step: at 0.9 of the bound the energy stays, above the limit it g
           "[dem_core][time_step]") {
   const auto growth = [](double share_of_exact, double share_of_bound) {
     Scene scene;
-    scene.law().bond = {.normal_scale = 1e4, .shear_scale = 5e3, .bending_scale = 2e3,
-                        .twisting_scale = 1e3, .tensile_limit = 1e30, .cohesion_limit = 1e30};
+    scene.law().bond = {.normal_scale = 1e4,
+                        .shear_scale = 5e3,
+                        .bending_scale = 2e3,
+                        .twisting_scale = 1e3,
+                        .tensile_limit = 1e30,
+                        .cohesion_limit = 1e30};
     scene.law().contact_stiffness = 0;  // bonds alone: the system stays linear
     add_bonded_cluster(scene, {0, 0, 0}, 12, 2.6, 3);
     scene.begin();
@@ -256,7 +271,8 @@ TEST_CASE("time step: at 0.9 of the bound the energy stays, above the limit it g
                            : share_of_bound * stable_time_step_s(scene.model, scene.state);
     std::mt19937_64 rng(4);
     for (int i = 0; i < 12; ++i)
-      scene.state.set_velocity_m_per_s(i, 1e-5 * Vec3(uniform01(rng), uniform01(rng), uniform01(rng)));
+      scene.state.set_velocity_m_per_s(i,
+                                       1e-5 * Vec3(uniform01(rng), uniform01(rng), uniform01(rng)));
     scene.run(1);
     const double start_J = scene.energy_now().total_J();
     double most_J = 0;

@@ -29,8 +29,8 @@ int Scene::sphere(const Vec3& position_m, double radius_m, double mass_kg) {
 }
 
 BondGeometry& Scene::bond(int i, int j) {
-  const double length_m = (start_m[static_cast<std::size_t>(j)] -
-                           start_m[static_cast<std::size_t>(i)]).norm();
+  const double length_m =
+      (start_m[static_cast<std::size_t>(j)] - start_m[static_cast<std::size_t>(i)]).norm();
   model.bonds.push_back(bond_from_numbers(i, j, length_m));
   return model.bonds.back();
 }
@@ -62,7 +62,8 @@ std::vector<Vec3> scattered_points(int num_points, double size_m, double min_dis
                                    unsigned seed) {
   std::mt19937_64 rng(seed);
   std::vector<Vec3> points;
-  while (static_cast<int>(points.size()) < num_points) {
+  for (int attempt = 0; static_cast<int>(points.size()) < num_points; ++attempt) {
+    REQUIRE(attempt < 1000000);  // no room for that many
     const double x = size_m * uniform01(rng);
     const double y = size_m * uniform01(rng);
     const Vec3 p(x, y, size_m * uniform01(rng));
@@ -82,8 +83,8 @@ void add_bonded_cluster(Scene& scene, const Vec3& centre_m, int num_grains, doub
                  0.8 + 0.4 * uniform01(rng));
   for (int i = first; i < scene.model.num_particles(); ++i)
     for (int j = i + 1; j < scene.model.num_particles(); ++j)
-      if ((scene.start_m[static_cast<std::size_t>(j)] -
-           scene.start_m[static_cast<std::size_t>(i)]).norm() < reach_m)
+      if ((scene.start_m[static_cast<std::size_t>(j)] - scene.start_m[static_cast<std::size_t>(i)])
+              .norm() < reach_m)
         scene.bond(i, j);
 }
 
@@ -115,8 +116,9 @@ Scene bonded_cylinder(int num_lanes) {
   for (const auto& row : read_table(folder + "bonds.csv")) {
     const int i = static_cast<int>(row[0]);
     const int j = static_cast<int>(row[1]);
-    model.bonds.push_back(bond_from_numbers(i, j, model.radius_m[static_cast<std::size_t>(i)] +
-                                                      model.radius_m[static_cast<std::size_t>(j)]));
+    model.bonds.push_back(bond_from_numbers(
+        i, j,
+        model.radius_m[static_cast<std::size_t>(i)] + model.radius_m[static_cast<std::size_t>(j)]));
   }
   LaneLaw& law = scene.law();
   law.contact_stiffness = 1e5;
@@ -140,8 +142,7 @@ Scene bonded_cylinder(int num_lanes) {
 }
 
 double plate_stress_Pa(const State& state, int lane) {
-  const double area_m2 =
-      std::numbers::pi * BondedCylinder::radius_m * BondedCylinder::radius_m;
+  const double area_m2 = std::numbers::pi * BondedCylinder::radius_m * BondedCylinder::radius_m;
   return 0.5 * (state.wall_force_N(1, lane).z() - state.wall_force_N(0, lane).z()) / area_m2;
 }
 

@@ -23,7 +23,8 @@ struct Scene {
   LaneLaw& law(int lane = 0) { return model.lanes[static_cast<std::size_t>(lane)]; }
   /// Returns the sphere's number.
   int sphere(const Vec3& position_m, double radius_m = 1.0, double mass_kg = 1.0);
-  /// A bond without stress at the start whose stiffness numbers are those of BondLaw. i < j, sorted.
+  /// A bond without stress at the start whose stiffness numbers are those of BondLaw. i < j,
+  /// sorted.
   BondGeometry& bond(int i, int j);
   /// Returns the wall's number.
   int plane(const Vec3& normal, const Vec3& point_m = Vec3::Zero());
