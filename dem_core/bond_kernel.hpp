@@ -13,6 +13,8 @@ struct BondForce {
   Pack<W> normal;        ///< on b along the normal, positive pushes apart
   Pack3<W> tangential;  ///< on a
   Pack3<W> moment;      ///< bending and twisting, on a
+  Mask<W> breaks;       ///< lanes whose bond broke in this step
+  Pack3<W> last_shear;  ///< shear force a breaking bond would have carried
 };
 
 /// A stored vector follows its bond: it turns with the bond's spin about the normal and is
@@ -73,7 +75,8 @@ TILTH_INLINE BondForce<W> bond_force(const Law<W>& law, const BondGeometry& g,
   bending_now.store(bond + 3 * W);
   twisting_now.store(bond + 6 * W);
   select(holds, one, zero).store(bond + 7 * W);
-  return {select(holds, push, zero), shear_now, bending_now + twisting_now * e.normal};
+  return {select(holds, push, zero), shear_now, bending_now + twisting_now * e.normal, breaks,
+          shear};
 }
 
 }  // namespace tilth::lanes

@@ -84,6 +84,14 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
     push = push + f.normal;
     tangential = tangential + f.tangential;
     moment = f.moment;
+    if (!view.contact_beside_bond && any(f.breaks)) {
+      // The contact takes over from its bond with the shear force it finds; Coulomb cuts it back.
+      const P shear_stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor) *
+                                law[law_shear_ratio];
+      const Pack3<W> taken = (P::all(1.0) / shear_stiffness) * f.last_shear;
+      select(f.breaks, taken, Pack3<W>::load(spring_m)).store(spring_m);
+      view.touching[p] = 1;
+    }
   }
   const Pack3<W> on_b = push * e.normal - tangential;
   const Pack3<W> turning = cross(e.normal, tangential);

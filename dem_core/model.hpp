@@ -84,7 +84,8 @@ struct Model {
   StiffnessKind stiffness_kind = StiffnessKind::modulus;
   DampingKind damping_kind = DampingKind::restitution;
   /// True: the contact acts beside an unbroken bond, as in Potyondy & Cundall 2004, section 2.2.
-  /// False: a bonded pair carries its bond alone and its contact only after breakage.
+  /// False: a bonded pair carries its bond alone and its contact only after breakage, beginning with
+  /// the bond's last shear force, cut back to Coulomb's limit.
   bool contact_beside_bond = true;
   std::vector<BondGeometry> bonds;            ///< sorted by (i, j), i < j
   std::vector<ReferenceDistance> references;  ///< sorted by (i, j), i < j

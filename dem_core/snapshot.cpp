@@ -13,7 +13,7 @@ namespace tilth {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-constexpr std::array<char, 8> magic = {'t', 'i', 'l', 't', 'h', 'S', '0', '1'};
+constexpr std::array<char, 8> magic = {'t', 'i', 'l', 't', 'h', 'S', '0', '2'};
 
 /// Visits every array of a State in one fixed order; reading and writing share it.
 template <typename StateRef, typename Visit>

@@ -77,9 +77,11 @@ Vec3 drive_velocity(WallDrive& drive, const Wall& wall, const Vec3& force_on_wal
       std::clamp(drive.velocity_m_per_s.dot(wall.direction) +
                      drive.servo_integral_gain_m_per_N_s2 * error_N * dt_s,
                  -limit, limit);
-  drive.velocity_m_per_s = integral * wall.direction;
+  const Vec3 sideways = drive.velocity_m_per_s -
+                        drive.velocity_m_per_s.dot(wall.direction) * wall.direction;
+  drive.velocity_m_per_s = sideways + integral * wall.direction;
   const double speed = drive.servo_gain_m_per_N_s * error_N + integral;
-  return std::clamp(speed, -limit, limit) * wall.direction;
+  return sideways + std::clamp(speed, -limit, limit) * wall.direction;
 }
 
 /// Moves every wall of every active lane; returns the wall velocities as packs.

@@ -113,6 +113,8 @@ class Bond:
         p.ktw = BOND_MODULUS / BOND_RATIO * 2 * self.i / length
         p.normalAdhesion = p.shearAdhesion = UNLIMITED  # the watch decides
         p.cohesionBroken, p.fragile, p.maxRollPl, p.maxTwistPl = False, True, -1, -1
+        self.contact_shear = Vector3(0, 0, 0)  # the contact's part of p.shearForce
+        self.last_shear = Vector3(0, 0, 0)     # p.shearForce when last seen
         self.press(False)
 
     def press(self, pressed):
@@ -123,20 +125,37 @@ class Bond:
         p.ks = self.ks + (c.ks if pressed else 0)
         p.unp = (self.kn * self.rest + c.kn * c.reference) / p.kn if pressed else self.rest
 
+    def slip(self, p, overlap):
+        """Splits the shear force into bond and contact, cuts the contact's part at friction; the bond's part."""
+        total, c = p.shearForce, self.contact
+        if not self.pressed:
+            return total
+        self.contact_shear += (total - self.last_shear) * (c.ks / p.ks)
+        of_bond = total - self.contact_shear
+        limit = c.friction * max(c.kn * (overlap - c.reference), 0.0)
+        size = self.contact_shear.norm()
+        if size > limit:
+            self.contact_shear *= limit / size
+            p.shearForce = of_bond + self.contact_shear
+        return of_bond
+
     def survives(self):
         g, p = self.interaction.geom, self.interaction.phys
+        of_bond = self.slip(p, g.penetrationDepth)
         pressure = (g.penetrationDepth - self.rest) * self.kn / self.area  # compression positive
-        shear = p.shearForce.norm() * self.ks / p.ks
+        shear = of_bond.norm()
         bending, torsion = p.moment_bending.norm(), p.moment_twist.norm()
         tension = -pressure + MOMENT_SHARE * bending * self.radius / self.i
         slide = shear / self.area + MOMENT_SHARE * torsion * self.radius / (2 * self.i)
         if tension > TENSION or slide > COHESION + pressure * math.tan(BOND_ANGLE):
-            share = self.contact.ks / p.ks if self.pressed else 0.0
-            p.shearForce = p.shearForce * share  # the bond's part of the shear force goes
+            p.shearForce = self.contact_shear  # the bond's part goes
             self.contact.give_to(p)
             return False
         if (g.penetrationDepth > self.contact.reference) != self.pressed:
             self.press(not self.pressed)
+            self.contact_shear = Vector3(0, 0, 0)
+            p.shearForce = of_bond
+        self.last_shear = Vector3(p.shearForce)
         return True
 
 
