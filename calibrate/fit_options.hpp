@@ -32,9 +32,11 @@ struct FitOptions {
   /// a tenth of a standard error at most.
   double chi_square_tolerance = 0.01;
   /// Half-width of a central secant where the parameter states none: in ln v if log_scale ...
-  double log_step = 0.05;
-  /// ... else as a share of upper - lower. 3-10 % keeps the noise of a fixed packing small.
-  double linear_step = 0.05;
+  /// Peaks of whole shear curves are chaotic even on a fixed packing: 15 % steps raise the signal
+  /// threefold over 5 % ones while the response stays nearly straight.
+  double log_step = 0.15;
+  /// ... else as a share of upper - lower.
+  double linear_step = 0.08;
   std::size_t max_simulations = 2000;
   double holdout_limit = 2.0;  ///< pass mark: root mean square of the hold-out residuals
   bool force = false;          ///< fit even if there are more free parameters than observations

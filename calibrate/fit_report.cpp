@@ -121,7 +121,9 @@ void variables(const FitSummary& s, std::string& text) {
   std::size_t width = 0;
   for (const FittedParameter& p : s.parameters) width = std::max(width, p.name.size());
   for (const FittedParameter& p : s.parameters) {
-    if (p.verdict == ParameterVerdict::fixed) {
+    if (!p.expression.empty()) {
+      line(text, "{:<{}} {} == '{}'", p.name + ":", width + 1, number(p.value), p.expression);
+    } else if (p.verdict == ParameterVerdict::fixed) {
       line(text, "{:<{}} {} (fixed)", p.name + ":", width + 1, number(p.value));
     } else {
       line(text, "{:<{}} {} {} (init = {})  {}", p.name + ":", width + 1, number(p.value),

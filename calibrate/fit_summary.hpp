@@ -62,6 +62,7 @@ struct FittedParameter {
   bool log_scale = false;
   bool estimate = true;
   ParameterVerdict verdict = ParameterVerdict::unknown;
+  std::string expression;    ///< "1.5*other" where the value follows another parameter
   std::string no_error_bar;  ///< completes "no error bar because ..."; empty if there is one
 };
 

@@ -93,6 +93,17 @@ FitJob read_job(const FitCommandOptions& o) {
   return job;
 }
 
+/// Tied parameters were held during the fit and recomputed in every run; the summary shall show it.
+void show_ties(const SoilData& soil, FitSummary& summary) {
+  const Eigen::VectorXd values = with_ties(soil.parameters, summary.values());
+  for (std::size_t k = 0; k < soil.parameters.size(); ++k) {
+    const std::optional<Tie>& tie = soil.parameters[k].tied_to;
+    if (!tie) continue;
+    summary.parameters[k].value = values[static_cast<Eigen::Index>(k)];
+    summary.parameters[k].expression = fmt::format("{}*{}", tie->factor, tie->parameter_id);
+  }
+}
+
 void write_results(const FitJob& job, const FitSummary& summary, FitCardContext& card,
                    const RunContext& context, const std::filesystem::path& folder,
                    spdlog::logger& log) {
@@ -163,9 +174,10 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   job.options.should_stop = [&stop] { return stop.load(); };
   const Simulator search = dem_simulator(job.soil, job.search, context);
   const Simulator confirm = dem_simulator(job.soil, job.confirm, context);
-  const FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
-                                 job.options);
+  FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
+                           job.options);
   display.finish();
+  if (!summary.parameters.empty()) show_ties(job.soil, summary);
 
   // 4. write
   if (summary.termination == Termination::bad_input ||

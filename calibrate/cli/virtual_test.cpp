@@ -26,6 +26,9 @@ Size size_of(Fidelity fidelity) {
   return {};
 }
 
+/// Shear box travel over its length. The peaks of the three soils come before 8 %.
+constexpr double shear_strain = 0.08;
+
 void apply_fidelity(UnconfinedCompressionConfig& c, Fidelity fidelity) {
   c.num_particles = size_of(fidelity).num_particles;
   c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
@@ -34,7 +37,7 @@ void apply_fidelity(UnconfinedCompressionConfig& c, Fidelity fidelity) {
 void apply_fidelity(DirectShearConfig& c, Fidelity fidelity) {
   c.num_particles = size_of(fidelity).num_particles;
   c.shear_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
-  if (fidelity == Fidelity::preview) c.max_shear_strain = 0.08;
+  c.max_shear_strain = shear_strain;
 }
 
 void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {

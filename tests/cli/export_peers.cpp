@@ -163,9 +163,9 @@ TEST_CASE("Export: 500 bonded spheres break in YADE at our peak", "[cli][export]
   report("secant modulus in YADE, Pa", modulus_a, modulus_b);
   report("peak in YADE, Pa", s.reference.rows[a][stress], theirs.rows[b][stress]);
   report("strain at peak in YADE", s.reference.rows[a][strain], theirs.rows[b][strain]);
-  // Measured in docs/export.md; breakage amplifies the lag of the watch.
-  CHECK_THAT(modulus_b, WithinRel(modulus_a, 0.02));
-  CHECK_THAT(theirs.rows[b][stress], WithinRel(s.reference.rows[a][stress], 0.05));
+  // Measured: modulus 0.1 %, peak 1.5 % (docs/export.md); breakage amplifies the lag of the watch.
+  CHECK_THAT(modulus_b, WithinRel(modulus_a, 0.005));
+  CHECK_THAT(theirs.rows[b][stress], WithinRel(s.reference.rows[a][stress], 0.03));
 }
 
 TEST_CASE("Export: 500 loose spheres compress in LAMMPS and LIGGGHTS as in our core",
@@ -178,8 +178,8 @@ TEST_CASE("Export: 500 loose spheres compress in LAMMPS and LIGGGHTS as in our c
     report("strain at 75 kPa in " + code,
            first_crossing(s.reference, strain, stress, 75e3, 0, s.reference.rows.size()),
            first_crossing(theirs, strain, stress, 75e3, 0, theirs.rows.size()));
-    // Measured in docs/export.md; classes of radii and rearrangement.
-    CHECK_THAT(loading_modulus_Pa(theirs, 25e3, 75e3), WithinRel(ours, 0.1));
+    // Measured: 2.6 and 2.0 % (docs/export.md); classes of radii, amplified by rearrangement.
+    CHECK_THAT(loading_modulus_Pa(theirs, 25e3, 75e3), WithinRel(ours, 0.05));
   };
   if (installed("lmp")) compare("LAMMPS", peers.run_lammps(s));
   if (installed("liggghts")) compare("LIGGGHTS", peers.run_liggghts(s));

@@ -10,10 +10,10 @@
 #   overlaps of the packing carry no force: unp = the distance at the start, in pairs and at platens
 #   damping   NewtonIntegrator(damping = alpha)
 # YADE's bond law breaks on forces only and has one spring per pair. A watch in Python, called every WATCH_EVERY steps, therefore
-# applies the strength, adds the contact's spring while the spheres press, and gives every contact its constants.
-# What YADE cannot express, and this deck does not: the strength is looked at every WATCH_EVERY steps, not in each; while a bond
-# lives, the contact beside it has no slip limit of its own; a contact that forms later has YADE's own stiffness until the next
-# look; moments follow YADE's total rotation, ours are incremental.
+# applies the strength, adds the contact's spring while the spheres press, lets it slip, and gives every contact its constants.
+# What YADE cannot express, and this deck does not: strength, slip beside a bond and constants of contacts that form later are looked
+# at every WATCH_EVERY steps, not in each (a larger number is faster and breaks later: see the manual page on export); moments
+# follow YADE's total rotation, ours are incremental.
 import csv, math, os, sys
 from yade.utils import *
 
@@ -27,7 +27,7 @@ MOMENT_SHARE, DAMPING = @BOND_MOMENT_CONTRIBUTION@, @LOCAL_DAMPING@
 RADIUS, PLATEN_SPEED = @SPECIMEN_RADIUS_M@, @PLATEN_SPEED_M_PER_S@  # closing speed, each platen moves at half of it
 BOTTOM, TOP = @PLATEN_BOTTOM_M@, @PLATEN_TOP_M@
 TIME_STEP, FINAL_STRAIN = @TIME_STEP_S@, @FINAL_STRAIN@
-OUTPUT_EVERY, WATCH_EVERY = @OUTPUT_EVERY_STEPS@, 10
+OUTPUT_EVERY, WATCH_EVERY = @OUTPUT_EVERY_STEPS@, 2
 UNLIMITED = 1e300
 HEIGHT = TOP - BOTTOM
 
