@@ -62,10 +62,6 @@ double overlap_free_factor(const ExportSpecimen& s) {
   return factor;
 }
 
-double compressive_force_N(const State& state) {
-  return 0.5 * (state.wall_force_N(1).z() - state.wall_force_N(0).z());
-}
-
 }  // namespace
 
 ExportSpecimen bonded_specimen(const SoilMaterial& material, int num_particles, std::uint64_t seed,
@@ -124,7 +120,7 @@ Curve compress(const Model& model, const ExportSpecimen& s, double end_stress_Pa
     for (int n = 0; n < export_interval_steps; ++n) {
       if (step(model, state, workspace).lane_failed)
         throw std::runtime_error("export: our own run of the loose specimen diverged");
-      sum_N += compressive_force_N(state);
+      sum_N += state.wall_force_N(1).z();
     }
     const double middle_s = state.time_s[0] - 0.5 * export_interval_steps * s.dt_s;
     strain = middle_s * s.platen_speed_m_per_s / s.height_m;

@@ -49,7 +49,7 @@ ExportSpecimen loose_specimen(const SoilMaterial& material, int num_particles, s
 /// Walls: bottom, top and, if container_radius_m > 0, the cylinder.
 Model loose_model(const ExportSpecimen& specimen, const SoilMaterial& material);
 
-/// Drives the top at platen_speed_m_per_s until stress or strain is reached; interval means.
+/// Drives the top at platen_speed_m_per_s until its stress or strain is reached; interval means.
 Curve compress(const Model& model, const ExportSpecimen& specimen, double end_stress_Pa,
                double end_strain);
 

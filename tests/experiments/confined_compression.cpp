@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// The oedometer against isotropic elasticity, and its unload-reload loop.
+#include <cmath>
+
+#include "tests/experiments/small_tests.hpp"
+
+using namespace tilth;
+using namespace tilth::testing;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+ExperimentResult compress(const SoilMaterial& soil, const ConfinedCompressionConfig& config) {
+  const ExperimentResult r = run_confined_compression({&soil, 1}, config, packings()).front();
+  INFO(r.message);
+  REQUIRE(r.status == RunStatus::completed);
+  return r;
+}
+
+/// Bonds and friction that nothing overcomes; stresses of 1/800 to 1/200 of the modulus.
+SoilMaterial linear_soil() {
+  SoilMaterial m = elastic_soil(20e6);
+  m.friction = 10;
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("Confined compression: an elastic specimen's moduli agree with isotropic elasticity",
+          "[experiments][confined]") {
+  ConfinedCompressionConfig ring = small_confined(3e-4);
+  ring.num_particles = 400;
+  const ExperimentResult confined = compress(linear_soil(), ring);
+  UnconfinedCompressionConfig free{.specimen_radius_m = ring.ring_radius_m,
+                                   .specimen_height_m = 2 * ring.ring_radius_m,
+                                   .num_particles = 650,
+                                   .platen_speed_over_wave_speed = 3e-4,
+                                   .max_axial_strain = 5e-3};
+  const SoilMaterial soil = linear_soil();
+  const ExperimentResult unconfined =
+      run_unconfined_compression({&soil, 1}, free, packings()).front();
+  const double young_Pa = unconfined.feature("secant_modulus_Pa");
+  const double constrained_Pa = confined.feature("constrained_modulus_Pa");
+  const double k0 = confined.feature("radial_stress_ratio");
+  const double nu = k0 / (1 + k0);
+  WARN("E " << young_Pa << " M " << constrained_Pa << " K0 " << k0 << " nu " << nu << " predicted "
+            << young_Pa * (1 - nu) / ((1 + nu) * (1 - 2 * nu)));
+  REQUIRE(confined.curves.front().rows.back()[3] == 0);
+  REQUIRE(constrained_Pa > young_Pa);
+  REQUIRE_THAT(constrained_Pa,
+               WithinRel(young_Pa * (1 - nu) / ((1 + nu) * (1 - 2 * nu)), 0.1));
+}
+
+TEST_CASE("Confined compression: without breakage or slip it unloads as it loads",
+          "[experiments][confined]") {
+  const ExperimentResult r = compress(linear_soil(), small_confined(1e-4));
+  const double loading_Pa = r.feature("constrained_modulus_Pa");
+  WARN("load " << loading_Pa << " unload " << r.feature("unload_modulus_Pa") << " reload "
+               << r.feature("reload_modulus_Pa"));
+  REQUIRE_THAT(r.feature("unload_modulus_Pa"), WithinRel(loading_Pa, 0.02));
+  REQUIRE_THAT(r.feature("reload_modulus_Pa"), WithinRel(loading_Pa, 0.02));
+}
+
+TEST_CASE("Confined compression: loose grains unload stiffer than they load",
+          "[experiments][confined]") {
+  ConfinedCompressionConfig config = small_confined(3e-4);
+  config.bond_gap_over_radius = -1;
+  const ExperimentResult r = compress(bonded_soil(), config);
+  WARN("load " << r.feature("constrained_modulus_Pa") << " unload "
+               << r.feature("unload_modulus_Pa") << " reload " << r.feature("reload_modulus_Pa")
+               << " K0 " << r.feature("radial_stress_ratio"));
+  REQUIRE(r.feature("unload_modulus_Pa") > 1.2 * r.feature("constrained_modulus_Pa"));
+  // Grains cannot pull at the ring, and carry a part of the load sideways.
+  REQUIRE(r.feature("radial_stress_ratio") > 0);
+  REQUIRE(r.feature("radial_stress_ratio") < 1);
+}
+
+TEST_CASE("Confined compression: stresses times k on moduli and strengths times k give the same strains",
+          "[experiments][confined]") {
+  ConfinedCompressionConfig config = small_confined();
+  const ExperimentResult soft = compress(bonded_soil(1e6), config);
+  config.load_from_stress_Pa *= 4;
+  config.load_to_stress_Pa *= 4;
+  config.unload_to_stress_Pa *= 4;
+  const ExperimentResult stiff = compress(bonded_soil(4e6), config);
+  // Rounding: 4 keeps the step on the ladder.
+  REQUIRE_THAT(stiff.feature("compression_strain"),
+               WithinRel(soft.feature("compression_strain"), 1e-9));
+  REQUIRE_THAT(stiff.feature("constrained_modulus_Pa"),
+               WithinRel(4 * soft.feature("constrained_modulus_Pa"), 1e-9));
+  REQUIRE_THAT(stiff.feature("radial_stress_ratio"),
+               WithinRel(soft.feature("radial_stress_ratio"), 1e-9));
+}
+
+TEST_CASE("Confined compression: the loop turns at its stresses", "[experiments][confined]") {
+  const ExperimentResult r = compress(linear_soil(), small_confined(1e-4));
+  double largest_Pa = 0, after_peak_Pa = 1e30;
+  for (const auto& row : r.curves.front().rows) {
+    if (row[1] > largest_Pa && after_peak_Pa > 50e3) largest_Pa = row[1];
+    if (largest_Pa > 99e3) after_peak_Pa = std::min(after_peak_Pa, row[1]);
+  }
+  WARN("turns at " << largest_Pa << " and " << after_peak_Pa);
+  // Rows are 20 steps apart: the platens turn up to one interval late.
+  REQUIRE_THAT(largest_Pa, WithinRel(100e3, 0.03));
+  REQUIRE_THAT(after_peak_Pa, WithinRel(25e3, 0.12));
+}

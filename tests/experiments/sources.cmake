@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: BSD-3-Clause
+list(APPEND TILTH_TEST_SOURCES
+  experiments/confined_compression.cpp
+  experiments/curve_features.cpp
+  experiments/direct_shear.cpp
+  experiments/failed_runs.cpp
+  experiments/field.cpp
+  experiments/packs.cpp
+  experiments/unconfined_compression.cpp)

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What unconfined compression must obey whatever the packing: dimensional analysis and the curve.
+#include <cmath>
+
+#include "tests/experiments/small_tests.hpp"
+
+using namespace tilth;
+using namespace tilth::testing;
+using Catch::Matchers::WithinAbs;
+using Catch::Matchers::WithinRel;
+
+namespace {
+
+ExperimentResult compress(const SoilMaterial& soil, const UnconfinedCompressionConfig& config) {
+  const ExperimentResult r = run_unconfined_compression({&soil, 1}, config, packings()).front();
+  REQUIRE(r.status == RunStatus::completed);
+  return r;
+}
+
+/// Every modulus and every strength times k.
+SoilMaterial scaled(SoilMaterial m, double k) {
+  m.contact_modulus_Pa *= k;
+  m.bond.modulus_Pa *= k;
+  m.bond.tensile_strength_Pa *= k;
+  m.bond.cohesion_Pa *= k;
+  return m;
+}
+
+/// Rows of a: strain, stress, broken bonds; those of b have the same strain and k times the stress.
+void require_scaled_curve(const ExperimentResult& a, const ExperimentResult& b, double k,
+                          double tolerance) {
+  const auto& rows_a = a.curves.front().rows;
+  const auto& rows_b = b.curves.front().rows;
+  REQUIRE(rows_a.size() == rows_b.size());
+  for (std::size_t n = 0; n < rows_a.size(); ++n) {
+    REQUIRE_THAT(rows_b[n][0], WithinRel(rows_a[n][0], tolerance));
+    REQUIRE_THAT(rows_b[n][1], WithinRel(k * rows_a[n][1], tolerance));
+    REQUIRE(rows_b[n][2] == rows_a[n][2]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Unconfined compression: stress goes exactly with the moduli at the same dimensionless speed",
+          "[experiments][unconfined]") {
+  UnconfinedCompressionConfig config = small_unconfined(8e-4);
+  config.max_axial_strain = 0.01;
+  const ExperimentResult soft = compress(elastic_soil(2e6), config);
+  REQUIRE(soft.curves.front().rows.back()[2] == 0);
+  // 4 and 1/16 keep the ratio of the time steps (2, 1/4) on the ladder, so only rounding differs.
+  for (const double k : {4.0, 1.0 / 16}) {
+    SoilMaterial other = elastic_soil(2e6 * k);
+    const ExperimentResult stiff = compress(other, config);
+    require_scaled_curve(soft, stiff, k, 1e-9);
+    REQUIRE_THAT(stiff.feature("secant_modulus_Pa"),
+                 WithinRel(k * soft.feature("secant_modulus_Pa"), 1e-9));
+  }
+  // Off the ladder the step is another share of the stable bound: 5e-3 for the time integration
+  // and the sampling of the curve.
+  REQUIRE_THAT(compress(elastic_soil(6e6), config).feature("secant_modulus_Pa"),
+               WithinRel(3 * soft.feature("secant_modulus_Pa"), 5e-3));
+}
+
+TEST_CASE("Unconfined compression: modulus and strength times k give k times the curve, to breakage",
+          "[experiments][unconfined]") {
+  const ExperimentResult soft = compress(bonded_soil(1e6), small_unconfined());
+  const ExperimentResult stiff = compress(scaled(bonded_soil(1e6), 4), small_unconfined());
+  REQUIRE(soft.curves.front().rows.back()[2] > 0);
+  require_scaled_curve(soft, stiff, 4, 1e-9);
+  REQUIRE_THAT(stiff.feature("peak_stress_Pa"), WithinRel(4 * soft.feature("peak_stress_Pa"), 1e-9));
+  REQUIRE(stiff.feature("bonds_broken_at_peak") == soft.feature("bonds_broken_at_peak"));
+}
+
+TEST_CASE("Unconfined compression: density scales out", "[experiments][unconfined]") {
+  // 16 times the density: a quarter of the wave speed, four times the step, the same quotients.
+  SoilMaterial heavy = bonded_soil();
+  heavy.density_kg_per_m3 *= 16;
+  require_scaled_curve(compress(bonded_soil(), small_unconfined()),
+                       compress(heavy, small_unconfined()), 1, 1e-9);
+}
+
+TEST_CASE("Unconfined compression: specimens of different size but like shape have the same curve",
+          "[experiments][unconfined]") {
+  const auto sized = [](double k) {
+    UnconfinedCompressionConfig c = small_unconfined();
+    c.specimen_radius_m *= k;
+    c.specimen_height_m *= k;
+    return compress(bonded_soil(), c);
+  };
+  const ExperimentResult small = sized(1);
+  // 16 keeps the step on its place on the ladder: rounding only.
+  require_scaled_curve(small, sized(16), 1, 1e-6);
+  // 10 changes the step's share of the bound by up to a quarter.
+  const ExperimentResult large = sized(10);
+  REQUIRE_THAT(large.feature("secant_modulus_Pa"),
+               WithinRel(small.feature("secant_modulus_Pa"), 1e-2));
+  REQUIRE_THAT(large.feature("peak_stress_Pa"), WithinRel(small.feature("peak_stress_Pa"), 2e-2));
+}
+
+TEST_CASE("Unconfined compression: the slow peak goes with the bond strength", "[experiments][unconfined]") {
+  const auto peak_Pa = [](double strength_Pa) {
+    SoilMaterial m = bonded_soil();
+    m.bond.tensile_strength_Pa = m.bond.cohesion_Pa = strength_Pa;
+    return compress(m, small_unconfined(1e-4)).feature("peak_stress_Pa");
+  };
+  const double weak_Pa = peak_Pa(5e3);
+  REQUIRE_THAT(peak_Pa(10e3), WithinRel(2 * weak_Pa, 0.05));
+  REQUIRE_THAT(peak_Pa(2.5e3), WithinRel(0.5 * weak_Pa, 0.05));
+}
+
+TEST_CASE("Unconfined compression: it stops past the peak, or at the strain limit",
+          "[experiments][unconfined]") {
+  UnconfinedCompressionConfig config = small_unconfined();
+  const ExperimentResult past = compress(bonded_soil(), config);
+  const auto& rows = past.curves.front().rows;
+  REQUIRE(past.message == "past the peak");
+  REQUIRE(rows.back()[1] < 0.7 * past.feature("peak_stress_Pa"));
+  REQUIRE(rows.back()[0] > 1.15 * past.feature("strain_at_peak"));
+  for (std::size_t n = 1; n < rows.size(); ++n) {
+    REQUIRE(rows[n][0] > rows[n - 1][0]);
+    REQUIRE(rows[n][2] >= rows[n - 1][2]);
+  }
+  config.max_axial_strain = 0.5 * past.feature("strain_at_peak");
+  const ExperimentResult early = compress(bonded_soil(), config);
+  REQUIRE(early.message == "at the strain limit");
+  // One interval of 20 steps is the resolution.
+  const double interval = rows[1][0] - rows[0][0];
+  REQUIRE_THAT(early.curves.front().rows.back()[0],
+               WithinAbs(config.max_axial_strain + 0.5 * interval, 0.5 * interval + 1e-12));
+}
