@@ -25,8 +25,8 @@ struct FitOptions {
   int num_fresh_seeds = 4;    ///< runs at the end on seeds no stage has used; 0 = none
   int num_rounds = 3;         ///< emulator rounds; 0 = no emulator
   int round_size = 6;         ///< real runs per emulator round
-  int num_starts = 3;         ///< local searches from the best real points
-  int max_iterations = 15;    ///< of one local search
+  int num_starts = 2;         ///< local searches from the best real points
+  int max_iterations = 10;    ///< of one local search
   int max_bias_rounds = 2;    ///< bias, refit, bias, refit
   /// A local search has converged when an iteration lowers chi-square by less than this. 0.01 is
   /// a tenth of a standard error at most.

@@ -14,8 +14,11 @@ namespace {
 template <typename T>
 bool parse(std::string_view text, T& value) {
   const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && stop == end;
+  T read{};
+  const auto [stop, error] = std::from_chars(text.data(), end, read);
+  if (error != std::errc() || stop != end) return false;
+  value = read;
+  return true;
 }
 
 bool parse(std::string_view text, std::vector<double>& values) {

@@ -39,7 +39,8 @@ int check_config(const std::filesystem::path& file) {
   JsonObjectReader object(document, problems);
   object.schema("tilth.fit/1");
   (void)read_fit_config(object);
-  (void)object.object("fit");
+  FitOptions ignored;
+  read_fit_options(object, ignored);
   object.finish();
   if (!problems.empty()) throw ConfigError(problems);
   std::cout << file.string() << ": no problems\n";

@@ -42,8 +42,7 @@ void check(const ExportOptions& o) {
   if (std::ranges::find(formats(), o.format) == formats().end())
     throw ConfigError({"--format: " + unknown_name_sentence("format", o.format, formats())});
   if (o.num_particles < 50 || o.num_particles > 200'000)
-    throw ConfigError(
-        {fmt::format("--particles {}: must be in [50, 200000]", o.num_particles)});
+    throw ConfigError({fmt::format("--particles {}: must be in [50, 200000]", o.num_particles)});
 }
 
 }  // namespace
@@ -51,8 +50,9 @@ void check(const ExportOptions& o) {
 void add_export_options(CLI::App& command, ExportOptions& o) {
   command.add_option("FIT", o.fit, "fit.json or the run folder that holds it")->required();
   command.add_option("--format", o.format, "json, csv, yade, lammps, liggghts or pfc");
-  command.add_option("--out", o.out,
-                     "folder (json, csv: default standard output; decks: runs/export-<format>-<n>)");
+  command.add_option(
+      "--out", o.out,
+      "folder (json, csv: default standard output; decks: runs/export-<format>-<n>)");
   command.add_option("--particles", o.num_particles, "spheres of a deck's specimen (default 500)");
   command.add_option("--seed", o.seed, "packing seed of a deck's specimen (default 1)");
 }

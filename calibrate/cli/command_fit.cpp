@@ -120,11 +120,23 @@ void write_results(const FitJob& job, const FitSummary& summary, FitCardContext&
     log.warn(sentence);
 }
 
+/// What fit() itself refuses, found before the run folder is made: a fit that is told to stop at
+/// once looks at its input and runs nothing.
+void refuse_what_fit_refuses(const FitJob& job) {
+  FitOptions options = job.options;
+  options.should_stop = [] { return true; };
+  const FitSummary s = fit(fit_parameters(job.soil), fit_targets(job.soil), Simulator(), nullptr,
+                           options);
+  if (s.termination == Termination::bad_input || s.termination == Termination::under_determined)
+    throw ConfigError({s.message});
+}
+
 }  // namespace
 
 void add_fit_options(CLI::App& app, FitCommandOptions& o) {
-  app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand");
-  app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil");
+  CLI::Option* soil = app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand");
+  app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
+      ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
   app.add_option("--out", o.out, "run folder (default runs/<soil>-<n>)");
   app.add_option("--seed", o.seed, "first packing seed (default 1)");
@@ -140,6 +152,7 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   // 1. read and check everything, then make the folder
   const auto start = std::chrono::steady_clock::now();
   FitJob job = read_job(o);
+  refuse_what_fit_refuses(job);
   const std::atomic<bool>& stop = interrupt_flag();
   const std::filesystem::path folder = make_run_folder(o.out, job.soil.id);
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
@@ -180,11 +193,6 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   if (!summary.parameters.empty()) show_ties(job.soil, summary);
 
   // 4. write
-  if (summary.termination == Termination::bad_input ||
-      summary.termination == Termination::under_determined) {
-    log.error(summary.message);
-    return exit_bad_input;
-  }
   card.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_results(job, summary, card, context, folder, log);

@@ -38,10 +38,9 @@ void apply_settings(const std::vector<std::string>& settings, TestConfig& config
       continue;
     }
     const Field* field = find_field(all, key);
-    const std::string wrong =
-        field ? set_field(*field, std::string_view(setting).substr(equals + 1))
-              : fmt::format("is no number of this test or material; did you mean {}?",
-                            nearest_name(key, names));
+    const std::string wrong = field
+                                  ? set_field(*field, std::string_view(setting).substr(equals + 1))
+                                  : unknown_name_sentence("number", key, names);
     if (!wrong.empty()) problems.push_back(fmt::format("--set {}: {}", setting, wrong));
   }
 }
@@ -97,6 +96,7 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   TestConfig config = virtual_test(o.experiment, o.quick ? Fidelity::preview : Fidelity::confirm);
   SoilMaterial material = starting_material(o, problems);
   apply_settings(o.settings, config, material, problems);
+  if (!problems.empty()) throw ConfigError(problems);
   for (const std::string& p : range_problems(fields(config))) problems.push_back(p);
   for (const std::string& p : tilth::problems(material)) problems.push_back(p);
   if (!problems.empty()) throw ConfigError(problems);

@@ -13,8 +13,14 @@
 namespace tilth {
 namespace {
 
-bool same_run(const PlannedTest& test, const SoilTarget& target) {
-  return target.test_id == test_id(test.config) && target.condition_id == test.condition_id;
+/// Two conditions that give a test the same setup share its runs.
+bool same_setup(TestConfig a, TestConfig b) {
+  if (a.index() != b.index()) return false;
+  const std::vector<Field> left = fields(a);
+  const std::vector<Field> right = fields(b);
+  return std::ranges::equal(left, right, [](const Field& x, const Field& y) {
+    return field_text(x) == field_text(y);
+  });
 }
 
 /// Results of all tests, [test][member].
@@ -48,10 +54,11 @@ std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity) {
     const SoilTarget& target = soil.targets[k];
     const TestCondition* condition = soil.condition(target.condition_id);
     if (!condition) throw ConfigError({label(target) + ": its condition is not in conditions.csv"});
-    auto test = std::ranges::find_if(tests, [&](const auto& t) { return same_run(t, target); });
+    TestConfig config = virtual_test(target.test_id, fidelity);
+    apply_condition(config, *condition);
+    auto test =
+        std::ranges::find_if(tests, [&](const auto& t) { return same_setup(t.config, config); });
     if (test == tests.end()) {
-      TestConfig config = virtual_test(target.test_id, fidelity);
-      apply_condition(config, *condition);
       tests.push_back({config, target.condition_id, {}});
       test = tests.end() - 1;
     }

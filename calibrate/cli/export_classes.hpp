@@ -22,9 +22,10 @@ RadiusClasses radius_classes(std::span<const double> radius_m, int num_classes);
 
 /// Numbers of a contact between two classes, or a class and a wall.
 struct ClassContact {
-  double normal_stiffness_N_per_m = 0.0;   ///< k_n = E_c pi min(R_a, R_b)^2 / (R_a + R_b); wall E_c pi R
-  double shear_stiffness_N_per_m = 0.0;    ///< k_n / kappa
-  double normal_damping_per_s = 0.0;       ///< gamma = 2 zeta sqrt(k_n / m_eff), times m_eff in the law
+  double normal_stiffness_N_per_m =
+      0.0;  ///< k_n = E_c pi min(R_a, R_b)^2 / (R_a + R_b); wall E_c pi R
+  double shear_stiffness_N_per_m = 0.0;  ///< k_n / kappa
+  double normal_damping_per_s = 0.0;  ///< gamma = 2 zeta sqrt(k_n / m_eff), times m_eff in the law
   double friction = 0.0;
 };
 

@@ -32,8 +32,8 @@ TemplateValues loose_values(const ExportSource& source, const ExportSpecimen& s,
 }
 
 /// Data file of both codes: id type diameter density x y z.
-std::string spheres_data(const ExportSpecimen& s, const RadiusClasses& classes, std::size_t num_types,
-                         double density_kg_per_m3) {
+std::string spheres_data(const ExportSpecimen& s, const RadiusClasses& classes,
+                         std::size_t num_types, double density_kg_per_m3) {
   const double x_m = 1.5 * s.container_radius_m;
   std::string text = fmt::format(
       "spheres, type = radius class\n\n{} atoms\n{} atom types\n\n{} {} xlo xhi\n{} {} ylo yhi\n"
@@ -81,8 +81,7 @@ std::string lammps_walls(const SoilMaterial& m, const RadiusClasses& classes) {
 
 std::string lammps_lid_force(std::size_t types) {
   std::string text;
-  for (std::size_t k = 1; k <= types; ++k)
-    text += fmt::format("{}c_push{}", k > 1 ? "+" : "", k);
+  for (std::size_t k = 1; k <= types; ++k) text += fmt::format("{}c_push{}", k > 1 ? "+" : "", k);
   return text;
 }
 
@@ -93,7 +92,8 @@ std::string matrix(const SoilMaterial& m, const RadiusClasses& classes,
   std::string text;
   for (std::size_t a = 0; a <= walls; ++a)
     for (std::size_t b = 0; b <= walls; ++b) {
-      const std::size_t grain = a == walls ? (b == walls ? 0 : b) : a;  // wall on wall is never used
+      const std::size_t grain =
+          a == walls ? (b == walls ? 0 : b) : a;  // wall on wall is never used
       const ClassContact c =
           a == walls || b == walls
               ? wall_contact(m, classes.radius_m[grain], export_restitution)

@@ -31,9 +31,8 @@ std::string csv_field(const std::string& text) {
 
 ExportSource read_export_source(const std::filesystem::path& card_or_folder) {
   ExportSource source{read_fit_card(card_or_folder), ""};
-  source.card_sha256 = sha256_of_file(std::filesystem::is_directory(card_or_folder)
-                                          ? card_or_folder / "fit.json"
-                                          : card_or_folder);
+  source.card_sha256 = sha256_of_file(
+      std::filesystem::is_directory(card_or_folder) ? card_or_folder / "fit.json" : card_or_folder);
   return source;
 }
 
@@ -69,8 +68,8 @@ std::vector<std::string> about_lines(const ExportSource& source) {
                   tool_version, tool_commit),
       fmt::format("Fit: soil {}, seed {}, status {}, fit.json sha256 {}", set.soil_id, set.seed,
                   set.status.empty() ? "not stated" : set.status, source.card_sha256),
-      fmt::format("Provenance: {}", set.provenance_sentence.empty() ? "not stated"
-                                                                     : set.provenance_sentence)};
+      fmt::format("Provenance: {}",
+                  set.provenance_sentence.empty() ? "not stated" : set.provenance_sentence)};
   if (set.preview) lines.push_back("PREVIEW: a --quick fit of few runs; not for use");
   for (const std::string& warning : set.warnings)
     lines.push_back(fmt::format("Warning: {}", warning));
@@ -78,9 +77,10 @@ std::vector<std::string> about_lines(const ExportSource& source) {
   if (!set.not_calibrated_for.empty())
     lines.push_back(fmt::format("Not calibrated for: {}", set.not_calibrated_for));
   if (set.particle_radius_m > 0)
-    lines.push_back(fmt::format("Fitted with grains of mean radius {:.4g} m; moduli and strengths, "
-                                "not stiffnesses per contact, carry over to other sizes",
-                                set.particle_radius_m));
+    lines.push_back(
+        fmt::format("Fitted with grains of mean radius {:.4g} m; moduli and strengths, "
+                    "not stiffnesses per contact, carry over to other sizes",
+                    set.particle_radius_m));
   lines.push_back("SI units; lo95, hi95: 95 % interval where the data fix the value");
   return lines;
 }

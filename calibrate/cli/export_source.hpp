@@ -28,8 +28,8 @@ struct ExportFile {
 struct ExportRow {
   std::string name;
   double value = 0.0;
-  std::string unit;                 ///< "1" without dimension
-  double lo95 = 0.0, hi95 = 0.0;    ///< NaN where unknown
+  std::string unit;               ///< "1" without dimension
+  double lo95 = 0.0, hi95 = 0.0;  ///< NaN where unknown
   std::string role, verdict;
 };
 

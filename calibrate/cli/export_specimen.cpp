@@ -52,12 +52,11 @@ double overlap_free_factor(const ExportSpecimen& s) {
   double factor = 1.0;
   for (std::size_t i = 0; i < s.radius_m.size(); ++i) {
     const Vec3& x = s.position_m[i];
-    const double to_wall_m = std::min({x.z(), s.height_m - x.z(),
-                                       s.container_radius_m - std::hypot(x.x(), x.y())});
+    const double to_wall_m =
+        std::min({x.z(), s.height_m - x.z(), s.container_radius_m - std::hypot(x.x(), x.y())});
     factor = std::min(factor, to_wall_m / s.radius_m[i]);
     for (std::size_t j = 0; j < i; ++j)
-      factor = std::min(factor,
-                        (x - s.position_m[j]).norm() / (s.radius_m[i] + s.radius_m[j]));
+      factor = std::min(factor, (x - s.position_m[j]).norm() / (s.radius_m[i] + s.radius_m[j]));
   }
   return factor;
 }
@@ -66,8 +65,8 @@ double overlap_free_factor(const ExportSpecimen& s) {
 
 ExportSpecimen bonded_specimen(const SoilMaterial& material, int num_particles, std::uint64_t seed,
                                PackingStore& packings) {
-  const auto config = config_of<UnconfinedCompressionConfig>("unconfined_compression",
-                                                             num_particles, seed);
+  const auto config =
+      config_of<UnconfinedCompressionConfig>("unconfined_compression", num_particles, seed);
   const auto packing = packings.get(packing_spec(config));
   ExportSpecimen s = placed(*packing, config.specimen_radius_m, config.specimen_height_m);
   s.bond_gap_m = config.bond_gap_over_radius * packing->mean_radius_m;
@@ -80,15 +79,17 @@ ExportSpecimen bonded_specimen(const SoilMaterial& material, int num_particles, 
   s.bonds = made.model.bonds;
   s.dt_s = made.model.lanes.front().dt_s;
   s.packing = fmt::format(
-      "unconfined compression of {} spheres, {} bonds, packing seed {}, porosity {} before overlaps; "
+      "unconfined compression of {} spheres, {} bonds, packing seed {}, porosity {} before "
+      "overlaps; "
       "our own curve again: calibrate simulate --experiment unconfined_compression --fit FIT --set "
       "num_particles={} --seed {}",
       num_particles, s.bonds.size(), seed, config.porosity, num_particles, seed);
   const ExperimentResult run = run_unconfined_compression(members, config, packings).front();
   if (run.status != RunStatus::completed)
-    throw ConfigError({fmt::format("our own run of the specimen ended with '{}' ({}): a deck of it "
-                                   "would show nothing; use other --particles or --seed",
-                                   name_of(run.status), run.message)});
+    throw ConfigError(
+        {fmt::format("our own run of the specimen ended with '{}' ({}): a deck of it "
+                     "would show nothing; use other --particles or --seed",
+                     name_of(run.status), run.message)});
   s.reference = run.curves.front();
   s.final_strain = s.reference.rows.back().front();
   return s;
@@ -151,8 +152,8 @@ ExportSpecimen loose_specimen(const SoilMaterial& material, int num_particles, s
       "packing (porosity {} before overlaps) times {:.6f}",
       num_particles, seed, 1 - (1 - config.porosity) * std::pow(s.radius_factor, 3),
       config.porosity, s.radius_factor);
-  s.reference = compress(loose_model(s, material), s, config.load_to_stress_Pa,
-                         config.max_axial_strain);
+  s.reference =
+      compress(loose_model(s, material), s, config.load_to_stress_Pa, config.max_axial_strain);
   s.final_strain = s.reference.rows.back().front();
   return s;
 }
@@ -176,8 +177,9 @@ std::string spheres_csv(const ExportSpecimen& s) {
 }
 
 std::string bonds_csv(const ExportSpecimen& s) {
-  std::string text = "# rows of spheres.csv, from 0; distance without force in the bond\n"
-                     "first,second,rest_length_m\n";
+  std::string text =
+      "# rows of spheres.csv, from 0; distance without force in the bond\n"
+      "first,second,rest_length_m\n";
   for (const BondGeometry& b : s.bonds)
     text += fmt::format("{},{},{}\n", b.i, b.j, b.rest_length_m);
   return text;

@@ -17,20 +17,20 @@ namespace tilth {
 struct ExportSpecimen {
   std::vector<double> radius_m;
   std::vector<Vec3> position_m;
-  std::vector<BondGeometry> bonds;    ///< empty in a confined compression
+  std::vector<BondGeometry> bonds;  ///< empty in a confined compression
   double mean_radius_m = 0.0;
-  double radius_factor = 1.0;         ///< radii of our packing times this
+  double radius_factor = 1.0;  ///< radii of our packing times this
   double container_radius_m = 0.0;
   double height_m = 0.0;
   double bond_gap_m = 0.0;            ///< pairs with a smaller gap are bonded
   double platen_speed_m_per_s = 0.0;  ///< closing speed
   double dt_s = 0.0;
-  double final_strain = 0.0;          ///< where our own run ended
-  std::string packing;                ///< one sentence
-  Curve reference;                    ///< ours: axial_strain, axial_stress_Pa, ...
+  double final_strain = 0.0;  ///< where our own run ended
+  std::string packing;        ///< one sentence
+  Curve reference;            ///< ours: axial_strain, axial_stress_Pa, ...
 };
 
-inline constexpr int export_interval_steps = 20;  ///< steps of which curves give the mean
+inline constexpr int export_interval_steps = 20;   ///< steps of which curves give the mean
 inline constexpr double export_restitution = 0.3;  ///< e where dashpots stand for local damping
 
 /// Unconfined compression as `calibrate simulate --experiment unconfined_compression` runs it.

@@ -8,7 +8,7 @@
 namespace tilth {
 namespace {
 
-void read_fit_options(JsonObjectReader& fit, FitOptions& o) {
+void read_fit_object(JsonObjectReader& fit, FitOptions& o) {
   const auto count = [&fit](const char* key, int& value, int least) {
     value = static_cast<int>(fit.integer(key, value, least, 1'000'000));
   };
@@ -33,6 +33,13 @@ void read_fit_options(JsonObjectReader& fit, FitOptions& o) {
 
 }  // namespace
 
+void read_fit_options(JsonObjectReader& config, FitOptions& options) {
+  if (auto fit = config.object("fit")) {
+    read_fit_object(*fit, options);
+    fit->finish();
+  }
+}
+
 void apply_run_config(const std::filesystem::path& file, SoilData& soil, FitOptions& options) {
   std::vector<std::string> problems;
   const JsonDocument document = read_json(file, problems);
@@ -40,10 +47,7 @@ void apply_run_config(const std::filesystem::path& file, SoilData& soil, FitOpti
   JsonObjectReader object(document, problems);
   object.schema("tilth.fit/1");
   const FitConfig config = read_fit_config(object);
-  if (auto fit = object.object("fit")) {
-    read_fit_options(*fit, options);
-    fit->finish();
-  }
+  read_fit_options(object, options);
   object.finish();
   if (!problems.empty()) throw ConfigError(problems);
   apply_fit_config(config, file.string(), soil, problems);

@@ -3,7 +3,6 @@
 #include "calibrate/cli/virtual_test.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
@@ -86,8 +85,7 @@ TestConfig virtual_test(const std::string& id, Fidelity fidelity) {
     return test;
   }
   const std::vector<std::string> known = virtual_test_ids();
-  throw ConfigError({fmt::format("unknown experiment '{}': known are {}; did you mean {}?", id,
-                                 fmt::join(known, ", "), nearest_name(id, known))});
+  throw ConfigError({unknown_name_sentence("experiment", id, known)});
 }
 
 std::vector<Field> fields(TestConfig& config) {

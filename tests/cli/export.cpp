@@ -23,7 +23,8 @@ using export_test::Folder;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// Numbers are written with the shortest text that reads back exactly; the formulas agree to rounding.
+// Numbers are written with the shortest text that reads back exactly; the formulas agree to
+// rounding.
 constexpr double rounding = 1e-12;
 
 /// Runs the program as from a shell and returns exit code, standard output and standard error.
@@ -105,12 +106,14 @@ struct Exported {
 
 }  // namespace
 
-TEST_CASE("Export: the csv holds every value with unit, interval, role and verdict", "[cli][export]") {
+TEST_CASE("Export: the csv holds every value with unit, interval, role and verdict",
+          "[cli][export]") {
   Folder folder("csv");
   const Said said = run({folder.card().string(), "--format", "csv"});
   REQUIRE(said.code == 0);
   CHECK_THAT(said.out, Contains("\nname,value,unit,lo95,hi95,role,verdict\n"));
-  CHECK_THAT(said.out, Contains("\nbond_modulus_Pa,4000000,Pa,3000000,5000000,calibrated,identified\n"));
+  CHECK_THAT(said.out,
+             Contains("\nbond_modulus_Pa,4000000,Pa,3000000,5000000,calibrated,identified\n"));
   CHECK_THAT(said.out, Contains("\nfriction,0.45,1,,,calibrated-weak,flat\n"));
   CHECK_THAT(said.out, Contains("\nbond_friction_angle_rad,0.35,rad,,,not varied,\n"));
   CHECK_THAT(said.out, Contains("\ngrain_density_kg_per_m3,2500,kg/m^3,,,not varied,\n"));
@@ -139,7 +142,8 @@ TEST_CASE("Export: the json says the same, on standard output or in a folder", "
 TEST_CASE("Export: LAMMPS stiffness and dashpots recompute from the classes of the data file",
           "[cli][export]") {
   Exported e;
-  const auto files = lammps_files(e.source, loose_specimen(e.source.set.material, 60, 3, e.packings));
+  const auto files =
+      lammps_files(e.source, loose_specimen(e.source.set.material, 60, 3, e.packings));
   const std::string& deck = file(files, "confined_compression.in");
   const auto radius = class_radius_m(file(files, "spheres.data"));
   int num_checked = 0;
@@ -159,7 +163,8 @@ TEST_CASE("Export: LAMMPS stiffness and dashpots recompute from the classes of t
   }
   CHECK(num_checked > 30);
   for (const auto& [type, r] : radius) {
-    const auto w = words(lines_with(deck, "fix             lid" + std::to_string(type) + " ").at(0));
+    const auto w =
+        words(lines_with(deck, "fix             lid" + std::to_string(type) + " ").at(0));
     CHECK_THAT(std::stod(w[6]), WithinRel(3e6 * pi * r, rounding));
     CHECK_THAT(std::stod(w[7]), WithinRel(gamma_per_s(3e6 * pi * r, mass_kg(r)), rounding));
     CHECK_THAT(std::stod(w[10]), WithinRel(3e6 * pi * r / 2.5, rounding));
@@ -210,7 +215,8 @@ TEST_CASE("Export: the matrices of LIGGGHTS hold the numbers of LAMMPS, and the 
     }
   }
   for (std::size_t a = 0; a + 1 < n; ++a) {
-    const auto w = words(lines_with(lammps, "fix             side" + std::to_string(a + 1) + " ").at(0));
+    const auto w =
+        words(lines_with(lammps, "fix             side" + std::to_string(a + 1) + " ").at(0));
     CHECK(kn[a * n + n - 1] == w[6]);
     CHECK(kn[(n - 1) * n + a] == w[6]);
     CHECK(mu[a * n + n - 1] == "0.1");
@@ -224,8 +230,7 @@ TEST_CASE("Export: the YADE deck carries each value of the card, and our bonds",
   const std::string& deck = file(files, "unconfined_compression.py");
   for (const char* line :
        {"\nDENSITY = 2500\n", "\nCONTACT_MODULUS, CONTACT_RATIO, FRICTION = 3000000, 2.5, 0.45\n",
-        "\nWALL_FRICTION = 0.1\n",
-        "\nBOND_MODULUS, BOND_RATIO, BOND_RADIUS = 4000000, 1.5, 0.9\n",
+        "\nWALL_FRICTION = 0.1\n", "\nBOND_MODULUS, BOND_RATIO, BOND_RADIUS = 4000000, 1.5, 0.9\n",
         "\nTENSION, COHESION, BOND_ANGLE = 21000, 32000, 0.35\n",
         "\nMOMENT_SHARE, DAMPING = 0.6, 0.65\n", "\nBOTTOM, TOP = 0, 0.1\n",
         "# Fit: soil test_loam, seed 17", "#   bond_modulus_Pa = 4e+06 Pa, 95 % 3e+06 to 5e+06",
@@ -239,9 +244,9 @@ TEST_CASE("Export: the YADE deck carries each value of the card, and our bonds",
   REQUIRE(bonds.size() == s.bonds.size() + 2);
   CHECK(s.bonds.size() > 60);
   for (const BondGeometry& b : s.bonds) {
-    const double distance_m = (s.position_m[static_cast<std::size_t>(b.i)] -
-                               s.position_m[static_cast<std::size_t>(b.j)])
-                                  .norm();
+    const double distance_m =
+        (s.position_m[static_cast<std::size_t>(b.i)] - s.position_m[static_cast<std::size_t>(b.j)])
+            .norm();
     CHECK_THAT(b.rest_length_m, WithinRel(distance_m, rounding));
   }
 }
@@ -307,7 +312,8 @@ TEST_CASE("Export: bad input ends with code 2, a sentence and nothing written", 
   refused({card, "--format", "csv", "--out", (folder.card() / "below").string()},
           "cannot be written");
   const std::filesystem::path wrong = folder.path() / "wrong.json";
-  std::ofstream(wrong) << R"({"schema": "tilth.card/1", "name": "x", "material": {"friction": -1}})";
+  std::ofstream(wrong)
+      << R"({"schema": "tilth.card/1", "name": "x", "material": {"friction": -1}})";
   refused({wrong.string(), "--format", "yade", "--out", out.string()}, "/material/friction");
   refused({wrong.string(), "--format", "yade", "--out", out.string()}, "contact_modulus_Pa");
 }

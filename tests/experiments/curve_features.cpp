@@ -22,7 +22,8 @@ TEST_CASE("Curve: the first of several equal peaks counts", "[experiments][curve
   REQUIRE(row_of_largest(curve({{0, -4}, {1, -3}}), 1) == 1);
 }
 
-TEST_CASE("Curve: a crossing is interpolated between rows and from the origin", "[experiments][curve]") {
+TEST_CASE("Curve: a crossing is interpolated between rows and from the origin",
+          "[experiments][curve]") {
   const Curve c = curve({{1, 2}, {2, 4}, {3, 3}, {4, 8}});
   REQUIRE_THAT(first_crossing(c, 0, 1, 1, 0, 4), WithinRel(0.5, rounding));
   REQUIRE_THAT(first_crossing(c, 0, 1, 3, 0, 4), WithinRel(1.5, rounding));

@@ -97,13 +97,16 @@ TEST_CASE("Failed runs: what never reaches its end is not settled", "[experiment
   REQUIRE_THAT(endless.results.front().message, Contains("within 100 steps"));
 }
 
-TEST_CASE("Failed runs: the stop flag ends every test at its next interval", "[experiments][failures]") {
+TEST_CASE("Failed runs: the stop flag ends every test at its next interval",
+          "[experiments][failures]") {
   const std::vector<SoilMaterial> soils = eight_soils();
   const std::atomic<bool> stop = true;
-  const RunOptions options{.stop = &stop};
-  for (const auto& results : {run_unconfined_compression(soils, small_unconfined(), packings(), options),
-                              run_direct_shear(soils, small_shear(), packings(), options),
-                              run_confined_compression(soils, small_confined(), packings(), options)})
+  RunOptions options;
+  options.stop = &stop;
+  for (const auto& results :
+       {run_unconfined_compression(soils, small_unconfined(), packings(), options),
+        run_direct_shear(soils, small_shear(), packings(), options),
+        run_confined_compression(soils, small_confined(), packings(), options)})
     for (const ExperimentResult& r : results) {
       REQUIRE(r.status == RunStatus::stopped);
       REQUIRE_THAT(r.message, Contains("stopped on request"));

@@ -46,11 +46,11 @@ TEST_CASE("Experiments: packs of 8 and of 4 give every member the bits of its ow
           "[experiments][packs]") {
   // On a processor without such lanes the pack falls back to what there is.
   for (const NamedTest& test : small_tests()) {
-    const Batch single = test.run(eight_soils(), {.max_lanes = 1});
+    const Batch single = test.run(eight_soils(), with_lanes(1));
     for (const ExperimentResult& r : single) REQUIRE(r.status == RunStatus::completed);
     for (const int lanes : {4, 8}) {
       INFO(test.name << ", " << lanes << " lanes");
-      require_same(test.run(eight_soils(), {.max_lanes = lanes}), single);
+      require_same(test.run(eight_soils(), with_lanes(lanes)), single);
     }
   }
 }
@@ -73,7 +73,7 @@ TEST_CASE("Experiments: neither the order of the members nor their number change
 
 TEST_CASE("Experiments: packs may run in any order", "[experiments][packs]") {
   const std::vector<SoilMaterial> soils = soils_of_two_densities();
-  RunOptions backwards{.max_lanes = 4};
+  RunOptions backwards = with_lanes(4);
   std::size_t num_packs = 0;
   backwards.for_each = [&](std::size_t n, const std::function<void(std::size_t)>& body) {
     num_packs = n;
@@ -81,12 +81,13 @@ TEST_CASE("Experiments: packs may run in any order", "[experiments][packs]") {
   };
   for (const NamedTest& test : small_tests()) {
     INFO(test.name);
-    require_same(test.run(soils, backwards), test.run(soils, {.max_lanes = 4}));
+    require_same(test.run(soils, backwards), test.run(soils, with_lanes(4)));
     REQUIRE(num_packs >= 3);
   }
 }
 
-TEST_CASE("Experiments: a member's time step depends on that member alone", "[experiments][packs]") {
+TEST_CASE("Experiments: a member's time step depends on that member alone",
+          "[experiments][packs]") {
   std::vector<SoilMaterial> soils = eight_soils();
   const auto run = [](std::span<const SoilMaterial> members) {
     UnconfinedCompressionConfig c = small_unconfined(1e-2);
@@ -94,11 +95,11 @@ TEST_CASE("Experiments: a member's time step depends on that member alone", "[ex
     return run_unconfined_compression(members, c, packings());
   };
   const Batch before = run(soils);
-  soils[0].contact_modulus_Pa = 1e9;  // 500 times stiffer: a step some 22 times shorter
+  soils[0].contact_modulus_Pa = 1e9;  // (1e9 + 1e6) / 2e6: a step some 22 times shorter
   const Batch after = run(soils);
-  REQUIRE(after[0].dt_s < 0.1 * before[0].dt_s);
+  REQUIRE(after[0].dt_s < 0.2 * before[0].dt_s);
   for (std::size_t k = 1; k < soils.size(); ++k) REQUIRE(after[k].dt_s == before[k].dt_s);
-  // The bound goes with sqrt(m / k): a quarter of the modulus, twice the step, exactly on the ladder.
+  // The bound goes with sqrt(m / k): a quarter of the modulus, twice the step, exactly.
   SoilMaterial softer = bonded_soil(1e6);
   REQUIRE(run({&softer, 1}).front().dt_s == 2 * run(std::vector{bonded_soil(4e6)}).front().dt_s);
 }
@@ -128,13 +129,13 @@ TEST_CASE("Packs: every task is run once, beside tasks of its own density only",
       const std::size_t task = task_of_lane[lane];
       REQUIRE(density[task] == density[task_of_lane[0]]);
       if (lane == 0 || task != task_of_lane[0]) ++times_run[task];  // spare lanes repeat the first
-      pack.push_back({.num_steps = static_cast<std::int64_t>(100 + task)});
+      pack.emplace_back().num_steps = static_cast<std::int64_t>(100 + task);
     }
     return pack;
   };
   for (const int lanes : {1, 4, 8}) {
     std::ranges::fill(times_run, 0);
-    const Batch results = run_in_packs(density, {.max_lanes = lanes}, run);
+    const Batch results = run_in_packs(density, with_lanes(lanes), run);
     for (std::size_t k = 0; k < density.size(); ++k) {
       REQUIRE(times_run[k] == 1);
       REQUIRE(results[k].num_steps == static_cast<std::int64_t>(100 + k));

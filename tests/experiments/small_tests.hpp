@@ -44,18 +44,24 @@ inline SoilMaterial bonded_soil(double modulus_Pa = 2e6) {
   return m;
 }
 
-/// Eight soils of unlike modulus, strength and friction; no two share all their time steps.
+/// Eight soils of unlike modulus, strength and friction; time steps and wave speeds differ too.
 inline std::vector<SoilMaterial> eight_soils() {
   std::vector<SoilMaterial> soils;
   for (int k = 0; k < 8; ++k) {
     SoilMaterial m = bonded_soil(1e6 * (1 + k));
-    m.bond.modulus_Pa = 1e6 * (8 - k);
+    m.bond.modulus_Pa = 1e6 * (1 + (3 * k) % 8);
     m.bond.tensile_strength_Pa = 5e3 * (1 + (3 * k) % 8);
     m.bond.cohesion_Pa = 5e3 * (1 + (5 * k) % 8);
     m.friction = 0.1 * (1 + (7 * k) % 8);
     soils.push_back(m);
   }
   return soils;
+}
+
+inline RunOptions with_lanes(int max_lanes) {
+  RunOptions options;
+  options.max_lanes = max_lanes;
+  return options;
 }
 
 /// Status, time step, every curve and every feature, bit for bit.

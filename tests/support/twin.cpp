@@ -119,6 +119,31 @@ TwinResult run_twin(const TwinSpec& spec, const RunContext& context) {
   return result;
 }
 
+std::vector<TwinCase> documented_twins() {
+  FitOptions options;  // smaller than the program's own: five fits in a quarter of an hour
+  options.num_design = 15;
+  options.num_search_seeds = 2;
+  options.num_confirm_seeds = 3;
+  options.num_fresh_seeds = 3;
+  options.num_rounds = 1;
+  options.num_starts = 2;
+  options.max_iterations = 5;
+  options.max_bias_rounds = 1;
+  options.chi_square_tolerance = 0.1;
+  const auto twin = [&](TwinTruth truth, std::uint64_t stream) {
+    return TwinSpec{.truth = truth, .noise_stream = stream, .options = options};
+  };
+  std::vector<TwinCase> cases = {{"soft, weak", twin({1.5e6, 3e3, 0.35}, 11)},
+                                 {"stiff, strong", twin({8e6, 15e3, 0.6}, 12)},
+                                 {"stiff, weak", twin({6e6, 4e3, 0.25}, 13)},
+                                 {"line", twin({3e6, 8e3, 0.45}, 14)},
+                                 {"other size", twin({3e6, 6e3, 0.4}, 15)}};
+  cases[3].spec.line = true;
+  cases[4].spec.data = Fidelity::search;
+  cases[4].spec.confirm = Fidelity::search;
+  return cases;
+}
+
 std::string twin_table(const std::string& name, const TwinResult& result) {
   std::string text;
   for (const TwinParameter& p : result.parameters)

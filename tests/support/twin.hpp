@@ -52,6 +52,13 @@ SoilData twin_soil(const TwinSpec& spec, const RunContext& context);
 /// Fits twin_soil() with the ordinary pipeline.
 TwinResult run_twin(const TwinSpec& spec, const RunContext& context);
 
+/// The twins of docs/twins.md.
+struct TwinCase {
+  std::string name;
+  TwinSpec spec;
+};
+std::vector<TwinCase> documented_twins();
+
 /// Rows of a Markdown table: truth, value, interval, inside; the last row says how well it fits.
 std::string twin_table(const std::string& name, const TwinResult& result);
 
