@@ -93,7 +93,8 @@ TEST_CASE("Direct shear: the failure line passes the peaks, and one normal stres
   for (const double p : config.normal_stress_Pa) {
     const double line_Pa =
         two.feature("cohesion_Pa") + p * std::tan(two.feature("friction_angle_rad"));
-    const std::string name = p == 10e3 ? "peak_shear_stress_Pa@10000" : "peak_shear_stress_Pa@40000";
+    const std::string name =
+        p == 10e3 ? "peak_shear_stress_Pa@10000" : "peak_shear_stress_Pa@40000";
     REQUIRE_THAT(two.feature(name), WithinRel(line_Pa, 1e-9));
   }
   config.normal_stress_Pa = {40e3};

@@ -42,7 +42,7 @@ void require_scaled_curve(const ExperimentResult& a, const ExperimentResult& b, 
 
 }  // namespace
 
-TEST_CASE("Unconfined compression: stress goes exactly with the moduli at equal dimensionless speed",
+TEST_CASE("Unconfined compression: stress goes exactly with the moduli at equal speed ratio",
           "[experiments][unconfined]") {
   UnconfinedCompressionConfig config = small_unconfined(8e-4);
   config.max_axial_strain = 0.01;
