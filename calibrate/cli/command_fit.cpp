@@ -139,7 +139,8 @@ void add_fit_options(CLI::App& app, FitCommandOptions& o) {
       ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
   app.add_option("--out", o.out, "run folder (default runs/<soil>-<n>)");
-  app.add_option("--seed", o.seed, "first packing seed (default 1)");
+  app.add_option("--seed", o.seed, "first packing seed (default 1)")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--threads", o.num_threads, "threads (default: all processors)")
       ->check(CLI::Range(0, 1024));
   app.add_option("--lanes", o.max_lanes, "at most this many parameter sets per pack: 1, 4 or 8")

@@ -83,7 +83,8 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("--set", o.settings, "key=value of the material or the test; may be repeated")
       ->take_all();
   command.add_option("--out", o.out, "output folder (default runs/<experiment>-<n>)");
-  command.add_option("--seed", o.seed, "first packing seed (default 1)");
+  command.add_option("--seed", o.seed, "first packing seed (default 1)")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--seeds", o.num_seeds, "number of packings (default 1)")
       ->check(CLI::Range(1, 1000));
   command.add_option("--threads", o.num_threads, "threads (default: all processors)")

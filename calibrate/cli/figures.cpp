@@ -18,17 +18,20 @@ std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? ' ' : c;
+    if (c == '\n') out += "\\n";
+    else out += c;
   }
   return out + "\"";
 }
 
 /// Underscores are subscripts in gnuplot's enhanced text; file and parameter names are not.
+/// The key stands in a margin of its own below the axis.
 std::string header(const std::filesystem::path& svg, int height) {
   return fmt::format(
-      "set terminal svg size 860,{} dynamic noenhanced font 'DejaVu Sans,13' background '#ffffff'\n"
-      "set output {}\nset grid lc rgb '#dddddd'\nset border lc rgb '#444444'\n",
-      height, quoted(svg.string()));
+      "set terminal svg size 960,{} dynamic noenhanced font 'DejaVu Sans,13' background '#ffffff'\n"
+      "set output {}\nset grid lc rgb '#dddddd'\nset border lc rgb '#444444'\n"
+      "set key at screen 0.5, screen {:.3f} center horizontal maxrows 2\nset bmargin 6.5\n",
+      height, quoted(svg.string()), 24.0 / height);
 }
 
 std::string run_gnuplot(const std::string& script, const std::filesystem::path& svg) {
@@ -54,7 +57,7 @@ std::string data_block(const std::string& name, const std::vector<std::vector<do
 
 std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& svg) {
   std::string script = header(svg, 520);
-  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\nset key outside below\n",
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n",
                         quoted(figure.title), quoted(figure.x_label), quoted(figure.y_label));
   std::vector<std::string> plots;
   for (std::size_t k = 0; k < figure.marks.size(); ++k) {
@@ -89,7 +92,7 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
 std::string draw_targets(const std::string& title, const std::vector<TargetRow>& rows,
                          const std::filesystem::path& svg) {
   if (rows.empty()) return "there is no target to draw";
-  std::string script = header(svg, 140 + 46 * static_cast<int>(rows.size()));
+  std::string script = header(svg, 180 + 40 * static_cast<int>(rows.size()));
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
@@ -103,8 +106,8 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
   }
   script += tics + ")\n";
   script += fmt::format(
-      "set title {}\nset xlabel '(simulated - target) / total sigma; bars: scatter of one packing'\n"
-      "set xrange [{:.3g}:{:.3g}]\nset yrange [0.4:{}]\nset key outside below\n"
+      "set title {}\nset xlabel '(simulated - target) / total sigma, bars: one packing'\n"
+      "set xrange [{:.3g}:{:.3g}]\nset yrange [0.4:{}]\nset lmargin 48\n"
       "set object rectangle from -1, graph 0 to 1, graph 1 fc rgb '#3d8b37' fs transparent solid "
       "0.10 noborder behind\n"
       "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb '#444444'\n",

@@ -98,8 +98,14 @@ void draw_tests(const SoilData& soil, const std::vector<Rerun>& runs,
   }
 }
 
+/// "test/observable/condition" as "observable" over "test, provenance: target 1.3e6, simulated 2e6".
 TargetRow target_row(const TargetResult& t, bool holdout) {
-  return {fmt::format("{} [{}]", t.name, to_string(t.provenance)), t.value, t.simulated, t.residual,
+  const std::size_t slash = t.name.find('/');
+  const std::size_t end = t.name.find('/', slash + 1);
+  return {fmt::format("{}, {}\n{}: {:.3g}, simulated {:.3g}",
+                      t.name.substr(slash + 1, end - slash - 1), t.name.substr(0, slash),
+                      to_string(t.provenance), t.value, t.simulated),
+          t.value, t.simulated, t.residual,
           t.sigma_total > 0 ? t.seed_sd / t.sigma_total : 0.0, holdout};
 }
 
@@ -131,7 +137,7 @@ std::vector<std::string> write_curves_and_figures(const SoilData& soil, const Fi
   std::vector<TargetRow> rows;
   for (const TargetResult& t : summary.targets) rows.push_back(target_row(t, false));
   for (const TargetResult& t : summary.holdouts) rows.push_back(target_row(t, true));
-  const std::string why = draw_targets(fmt::format("{}: targets against simulation. {}", soil.name,
+  const std::string why = draw_targets(fmt::format("{}: targets against simulation\n{}", soil.name,
                                                    provenance_sentence(soil)),
                                        rows, folder / "figures" / "targets.svg");
   if (!why.empty()) missing.push_back("no figure targets.svg: " + why);

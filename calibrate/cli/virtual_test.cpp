@@ -30,7 +30,9 @@ constexpr double shear_strain = 0.08;
 
 void apply_fidelity(UnconfinedCompressionConfig& c, Fidelity fidelity) {
   c.num_particles = size_of(fidelity).num_particles;
-  c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+  // A brittle peak needs a slower platen than the other tests: +31 % at 8e-4, +4 % at 1e-4, +2 % at
+  // 5e-5 against standing still; it is also the cheapest test.
+  c.platen_speed_over_wave_speed = 0.25 * size_of(fidelity).speed_over_wave_speed;
 }
 
 void apply_fidelity(DirectShearConfig& c, Fidelity fidelity) {

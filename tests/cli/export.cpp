@@ -238,7 +238,7 @@ TEST_CASE("Export: the YADE deck carries each value of the card, and our bonds",
     CHECK_THAT(deck, Contains(line));
   // 3e-4 of sqrt((3e6 + 4e6) / 2500), the speed of a confirming test
   const auto speed = words(lines_with(deck, "RADIUS, PLATEN_SPEED").at(0));
-  CHECK_THAT(std::stod(speed[4]), WithinRel(3e-4 * std::sqrt(7e6 / 2500), rounding));
+  CHECK_THAT(std::stod(speed[4]), WithinRel(0.75e-4 * std::sqrt(7e6 / 2500), rounding));
   CHECK(lines_with(file(files, "spheres.csv"), "").size() == 62);
   const auto bonds = lines_with(file(files, "bonds.csv"), "");
   REQUIRE(bonds.size() == s.bonds.size() + 2);

@@ -1,3 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 list(APPEND TILTH_TEST_SOURCES cli/export.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/export_peers.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/bad_input.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/fit_command.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/program_run.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/progress_display.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/twin_recovery.cpp)
+list(APPEND TILTH_TEST_SOURCES support/twin.cpp)
