@@ -25,8 +25,9 @@ TILTH_INLINE void clear_spring(double* spring_m, std::uint8_t& touching) {
   touching = 0;
 }
 
-/// Force on j and the moments of one listed pair, added to both bodies.
-template <int W>
+/// Force on j and the moments of one listed pair, added to both bodies. HasBonds = false leaves the
+/// bond out of the code; the bits are those of a model without bonds either way.
+template <int W, bool HasBonds>
 TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
                              Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t p) {
   using P = Pack<W>;
@@ -35,7 +36,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   double* spring_m = view.pair_spring_m + p * 3 * W;
   const Pack3<W> branch = Pack3<W>::load(view.motion + j * 9 * W) - a.position;
   const P squared = dot(branch, branch);
-  const bool bonded = pair.bond >= 0;
+  const bool bonded = HasBonds && pair.bond >= 0;
   const P reference = P::all(pair.reference_m);
   Mask<W> touching = squared < reference * reference;
   double* bond = nullptr;
@@ -102,7 +103,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   (Pack3<W>::load(force_b + 3 * W) + (arm_b * turning - moment)).store(force_b + 3 * W);
 }
 
-template <int W>
+template <int W, bool HasBonds>
 TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law) {
   for (std::int64_t i = 0; i < view.num_particles; ++i) {
     const std::int64_t begin = view.row_begin[i];
@@ -112,7 +113,8 @@ TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law
     double* store = view.force + i * 6 * W;
     Pack3<W> force = Pack3<W>::load(store);
     Pack3<W> torque = Pack3<W>::load(store + 3 * W);
-    for (std::int64_t p = begin; p < end; ++p) pair_force(view, law, a, force, torque, p);
+    for (std::int64_t p = begin; p < end; ++p) 
+      pair_force<W, HasBonds>(view, law, a, force, torque, p);
     force.store(store);
     torque.store(store + 3 * W);
   }

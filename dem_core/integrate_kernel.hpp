@@ -56,7 +56,8 @@ TILTH_INLINE void integrate(const StepView& view, const Law<W>& law) {
 template <int W>
 void step_lanes(const StepView& view) {
   const Law<W> law(view.law);
-  accumulate_pair_forces(view, law);
+  if (view.num_bonds > 0) accumulate_pair_forces<W, true>(view, law);
+  else accumulate_pair_forces<W, false>(view, law);
   accumulate_wall_forces(view, law);
   integrate(view, law);
 }

@@ -122,6 +122,7 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   lanes::StepView v{};
   v.num_particles = model.num_particles();
   v.num_walls = static_cast<int>(model.walls.size());
+  v.num_bonds = static_cast<int>(model.bonds.size());
   v.contact_beside_bond = model.contact_beside_bond;
   v.law = workspace.law.data();
   v.motion = state.motion.data();

@@ -55,6 +55,7 @@ struct WallView {
 struct StepView {
   int num_particles;
   int num_walls;
+  int num_bonds;
   bool contact_beside_bond;
   const double* law;
   double* motion;
