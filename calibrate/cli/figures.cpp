@@ -92,7 +92,7 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
 std::string draw_targets(const std::string& title, const std::vector<TargetRow>& rows,
                          const std::filesystem::path& svg) {
   if (rows.empty()) return "there is no target to draw";
-  std::string script = header(svg, 180 + 40 * static_cast<int>(rows.size()));
+  std::string script = header(svg, 180 + 54 * static_cast<int>(rows.size()));
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
