@@ -15,13 +15,15 @@ namespace tilth {
 namespace {
 
 /// What the row lacks for this observable; empty when it has all.
-std::string unmet_need(const TestCondition& condition, ConditionNeed need) {
-  const std::set<double> stresses(condition.normal_stress_Pa.begin(),
-                                  condition.normal_stress_Pa.end());
-  const auto& from = condition.load_from_stress_Pa;
-  const auto& to = condition.load_to_stress_Pa;
-  const auto& back = condition.unload_to_stress_Pa;
-  switch (need) {
+std::string unmet_need(const TestCondition& condition, const KnownObservable& observable) {
+  for (const std::string& column : observable.needed_columns)
+    if (condition.values(column).empty()) return column;
+  const std::vector<double> normal = condition.values("normal_stress_Pa");
+  const std::set<double> stresses(normal.begin(), normal.end());
+  const auto from = condition.number("load_from_stress_Pa");
+  const auto to = condition.number("load_to_stress_Pa");
+  const auto back = condition.number("unload_to_stress_Pa");
+  switch (observable.need) {
     case ConditionNeed::none:
       return "";
     case ConditionNeed::one_normal_stress:
@@ -102,7 +104,7 @@ void check_conditions_of_targets(const SoilData& soil, const SoilVocabulary& voc
       continue;
     }
     const KnownObservable* observable = vocabulary.observable(target.test_id, target.observable_id);
-    const std::string need = observable == nullptr ? "" : unmet_need(*condition, observable->need);
+    const std::string need = observable == nullptr ? "" : unmet_need(*condition, *observable);
     if (need.empty()) continue;
     problems.push_back(where + fmt::format("{} needs {} in condition '{}' (conditions.csv:{})",
                                            target.observable_id, need, condition->id,

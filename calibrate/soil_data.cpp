@@ -74,6 +74,16 @@ std::optional<Tie> parse_tie(std::string_view text) {
   return tie;
 }
 
+std::vector<double> TestCondition::values(std::string_view column) const {
+  const auto found = std::ranges::find(numbers, column, &ConditionNumbers::column);
+  return found == numbers.end() ? std::vector<double>{} : found->values;
+}
+
+std::optional<double> TestCondition::number(std::string_view column) const {
+  const std::vector<double> found = values(column);
+  return found.size() == 1 ? std::optional(found.front()) : std::nullopt;
+}
+
 const TestCondition* SoilData::condition(std::string_view condition_id) const {
   return find_id(conditions, &TestCondition::id, condition_id);
 }
@@ -123,7 +133,7 @@ SoilData read_soil(const std::filesystem::path& folder, const SoilVocabulary& vo
     return soil;
   }
   read_soil_json(folder / "soil.json", soil, problems);
-  soil.conditions = read_conditions(folder / "conditions.csv", problems);
+  soil.conditions = read_conditions(folder / "conditions.csv", vocabulary, problems);
   soil.targets = read_measurements(folder / "measurements.csv", vocabulary, problems);
   soil.parameters = read_parameters(folder / "parameters.csv", vocabulary, problems);
   check_conditions_of_targets(soil, vocabulary, problems);

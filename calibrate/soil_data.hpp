@@ -52,21 +52,24 @@ struct StateQuantity {
   Origin origin;
 };
 
-/// One row of conditions.csv: how a test was run. An absent number is not known or not applicable.
+/// Numbers of one column of conditions.csv.
+struct ConditionNumbers {
+  std::string column;          ///< ends in its SI unit: "normal_stress_Pa"
+  std::vector<double> values;  ///< never empty; more than one only where the column takes a list
+};
+
+/// One row of conditions.csv: how a test was run. A column that is named like a setting of a virtual
+/// test is that setting; an absent number is not known, or the test's own default holds.
 struct TestCondition {
   std::string id;
-  std::optional<double> water_content;           ///< gravimetric, kg water per kg dry soil
-  std::optional<double> bulk_density_kg_per_m3;  ///< dry
-  std::optional<double> suction_Pa;              ///< positive
-  std::vector<double> normal_stress_Pa;          ///< direct shear: one, or those of the line
-  std::optional<double> load_from_stress_Pa;     ///< confined compression: the secant begins here
-  std::optional<double> load_to_stress_Pa;       ///< ... ends here, and unloading begins
-  std::optional<double> unload_to_stress_Pa;     ///< ... and the unload secant ends here
-  std::optional<double> speed_m_per_s;
-  std::optional<double> depth_m;
-  std::optional<double> particle_radius_m;
+  std::vector<ConditionNumbers> numbers;
   std::string note;
   std::size_t line = 0;
+
+  /// Numbers of a column; empty when absent.
+  std::vector<double> values(std::string_view column) const;
+  /// The number of a column that holds exactly one.
+  std::optional<double> number(std::string_view column) const;
 };
 
 /// One row of measurements.csv.

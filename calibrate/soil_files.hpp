@@ -17,6 +17,7 @@ void read_soil_json(const std::filesystem::path& file, SoilData& soil,
                     std::vector<std::string>& problems);
 
 std::vector<TestCondition> read_conditions(const std::filesystem::path& file,
+                                           const SoilVocabulary& vocabulary,
                                            std::vector<std::string>& problems);
 
 /// Rows of measurements.csv. A row whose test, observable or value cannot be read is reported and

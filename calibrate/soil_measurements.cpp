@@ -14,36 +14,30 @@
 namespace tilth {
 namespace {
 
-/// A number of conditions.csv inside what is physically usual; `column` ends in its unit.
-std::optional<double> usual(CsvRowReader& row, const std::string& column, double lower,
-                            double upper) {
-  const auto number = row.optional_number(column);
-  if (!number || (*number >= lower && *number <= upper)) return number;
-  row.problem(fmt::format("{} = {}: must be in [{}, {}]{}", column, *number, lower, upper,
-                          unit_hint(column, *number, lower, upper)));
-  return std::nullopt;
+/// The numbers of one cell, each inside what is physically usual.
+std::vector<double> usual(CsvRowReader& row, const KnownConditionColumn& column) {
+  std::vector<double> values;
+  if (column.takes_list) values = row.optional_numbers(column.name);
+  else if (const auto number = row.optional_number(column.name)) values = {*number};
+  for (const double value : values) {
+    if (value >= column.plausible_lower && value <= column.plausible_upper) continue;
+    row.problem(
+        fmt::format("{} = {}: must be in [{}, {}]{}", column.name, value, column.plausible_lower,
+                    column.plausible_upper,
+                    unit_hint(column.name, value, column.plausible_lower, column.plausible_upper)));
+  }
+  return values;
 }
 
-TestCondition read_condition(CsvRowReader& row) {
+TestCondition read_condition(CsvRowReader& row, const SoilVocabulary& vocabulary) {
   TestCondition condition;
   condition.line = row.line();
   condition.id = row.text("conditionId");
-  condition.water_content = usual(row, "water_content", 0.0, 1.0);
-  condition.bulk_density_kg_per_m3 = usual(row, "bulk_density_kg_per_m3", 300.0, 2500.0);
-  condition.suction_Pa = usual(row, "suction_Pa", 0.0, 1e9);
-  condition.load_from_stress_Pa = usual(row, "load_from_stress_Pa", 0.0, 1e7);
-  condition.load_to_stress_Pa = usual(row, "load_to_stress_Pa", 100.0, 1e7);
-  condition.unload_to_stress_Pa = usual(row, "unload_to_stress_Pa", 0.0, 1e7);
-  condition.speed_m_per_s = usual(row, "speed_m_per_s", 0.0, 30.0);
-  condition.depth_m = usual(row, "depth_m", 0.0, 3.0);
-  condition.particle_radius_m = usual(row, "particle_radius_m", 1e-6, 1.0);
-  condition.note = row.optional_text("note");
-  condition.normal_stress_Pa = row.optional_numbers("normal_stress_Pa");
-  for (const double stress_Pa : condition.normal_stress_Pa) {
-    if (stress_Pa >= 100.0 && stress_Pa <= 1e7) continue;
-    row.problem(fmt::format("normal_stress_Pa = {}: must be in [100, 1e+07]{}", stress_Pa,
-                            unit_hint("normal_stress_Pa", stress_Pa, 100.0, 1e7)));
+  for (const KnownConditionColumn& column : vocabulary.condition_columns) {
+    std::vector<double> values = usual(row, column);
+    if (!values.empty()) condition.numbers.push_back({column.name, std::move(values)});
   }
+  condition.note = row.optional_text("note");
   return condition;
 }
 
@@ -143,18 +137,17 @@ std::optional<SoilTarget> read_target(CsvRowReader& row, const SoilVocabulary& v
 }  // namespace
 
 std::vector<TestCondition> read_conditions(const std::filesystem::path& file,
+                                           const SoilVocabulary& vocabulary,
                                            std::vector<std::string>& problems) {
-  const CsvColumns columns{
-      {"conditionId"},
-      {"water_content", "bulk_density_kg_per_m3", "suction_Pa", "normal_stress_Pa",
-       "load_from_stress_Pa", "load_to_stress_Pa", "unload_to_stress_Pa", "speed_m_per_s",
-       "depth_m", "particle_radius_m", "note"}};
+  CsvColumns columns{{"conditionId"}, {"note"}};
+  for (const KnownConditionColumn& column : vocabulary.condition_columns)
+    columns.optional.push_back(column.name);
   const CsvTable table = read_csv(file, columns, problems);
   std::vector<TestCondition> conditions;
   std::set<std::string> seen;
   for (const CsvRow& record : table.rows) {
     CsvRowReader row(table, record, problems);
-    conditions.push_back(read_condition(row));
+    conditions.push_back(read_condition(row, vocabulary));
     const std::string& id = conditions.back().id;
     if (!id.empty() && !seen.insert(id).second) {
       row.problem(fmt::format("conditionId '{}' occurs twice", id));

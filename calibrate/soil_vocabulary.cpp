@@ -47,6 +47,18 @@ SoilVocabulary built_in() {
       {"local_damping", 0.0, 0.95},
       {"grain_density_kg_per_m3", 500.0, 1e4},
   };
+  words.condition_columns = {
+      {"water_content", 0.0, 1.0},
+      {"bulk_density_kg_per_m3", 300.0, 2500.0},
+      {"suction_Pa", 0.0, 1e9},
+      {"speed_m_per_s", 0.0, 30.0},
+      {"depth_m", 0.0, 3.0},
+      {"particle_radius_m", 1e-6, 1.0},
+      {"normal_stress_Pa", 100.0, 1e7, true},
+      {"load_from_stress_Pa", 0.0, 1e7},
+      {"load_to_stress_Pa", 100.0, 1e7},
+      {"unload_to_stress_Pa", 0.0, 1e7},
+  };
   return words;
 }
 

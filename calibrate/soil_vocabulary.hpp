@@ -18,6 +18,14 @@ enum class ConditionNeed {
   unload_stresses         ///< load_to_stress_Pa > unload_to_stress_Pa
 };
 
+/// A column of conditions.csv.
+struct KnownConditionColumn {
+  std::string name;              ///< ends in its SI unit
+  double plausible_lower = 0.0;  ///< values lie inside; outside is taken for a wrong unit
+  double plausible_upper = 0.0;
+  bool takes_list = false;       ///< several numbers with ';' between them
+};
+
 /// A number a virtual test can give.
 struct KnownObservable {
   std::string test_id;
@@ -25,6 +33,7 @@ struct KnownObservable {
   double plausible_lower = 0.0;  ///< soil values lie inside; outside is taken for a wrong unit
   double plausible_upper = 0.0;
   ConditionNeed need = ConditionNeed::none;
+  std::vector<std::string> needed_columns = {};  ///< of conditions.csv, whatever their value
 };
 
 /// A parameter of the model, as data: what it is called and where it makes sense.
@@ -37,6 +46,7 @@ struct KnownParameter {
 struct SoilVocabulary {
   std::vector<KnownObservable> observables;
   std::vector<KnownParameter> parameters;
+  std::vector<KnownConditionColumn> condition_columns;
 
   std::vector<std::string> test_ids() const;  ///< each once
   std::vector<std::string> observable_ids(std::string_view test_id) const;

@@ -68,6 +68,16 @@ std::string set_field(const Field& field, std::string_view text) {
   return found.empty() ? std::string() : found.front();
 }
 
+void set_numbers(const Field& field, const std::vector<double>& values) {
+  std::visit(
+      [&values](auto* v) {
+        using T = std::decay_t<decltype(*v)>;
+        if constexpr (std::is_same_v<T, std::vector<double>>) *v = values;
+        else *v = static_cast<T>(values.front());
+      },
+      field.value);
+}
+
 std::string field_text(const Field& field) {
   return std::visit(
       [](const auto* v) -> std::string {

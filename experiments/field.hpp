@@ -28,6 +28,10 @@ const Field* find_field(const std::vector<Field>& fields, std::string_view name)
 /// Sets a field from text ("0.05"; lists as "10e3,20e3"). Empty on success, else what was wrong.
 std::string set_field(const Field& field, std::string_view text);
 
+/// Sets a field from numbers: a list takes them all, a single number the first. Not checked; see
+/// range_problems. @pre values is not empty
+void set_numbers(const Field& field, const std::vector<double>& values);
+
 /// Value as shortest text that reads back exactly.
 std::string field_text(const Field& field);
 

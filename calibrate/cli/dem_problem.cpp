@@ -23,6 +23,15 @@ bool same_setup(TestConfig a, TestConfig b) {
   });
 }
 
+/// @throws ConfigError naming the condition and everything the test cannot be run with
+void check_setup(TestConfig& config, const TestCondition& condition) {
+  std::vector<std::string> problems = range_problems(fields(config));
+  for (std::string& p : problems)
+    p = fmt::format("condition '{}' (conditions.csv:{}) of {}: {}", condition.id, condition.line,
+                    test_id(config), p);
+  if (!problems.empty()) throw ConfigError(std::move(problems));
+}
+
 /// Results of all tests, [test][member].
 using TestResults = std::vector<std::vector<ExperimentResult>>;
 
@@ -56,6 +65,7 @@ std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity) {
     if (!condition) throw ConfigError({label(target) + ": its condition is not in conditions.csv"});
     TestConfig config = virtual_test(target.test_id, fidelity);
     apply_condition(config, *condition);
+    check_setup(config, *condition);
     auto test =
         std::ranges::find_if(tests, [&](const auto& t) { return same_setup(t.config, config); });
     if (test == tests.end()) {

@@ -99,25 +99,18 @@ void set_packing_seed(TestConfig& config, std::uint64_t seed) {
 }
 
 void apply_condition(TestConfig& config, const TestCondition& condition) {
-  if (auto* shear = std::get_if<DirectShearConfig>(&config)) {
-    if (!condition.normal_stress_Pa.empty()) shear->normal_stress_Pa = condition.normal_stress_Pa;
-  }
-  if (auto* oedometer = std::get_if<ConfinedCompressionConfig>(&config)) {
-    oedometer->load_from_stress_Pa =
-        condition.load_from_stress_Pa.value_or(oedometer->load_from_stress_Pa);
-    oedometer->load_to_stress_Pa =
-        condition.load_to_stress_Pa.value_or(oedometer->load_to_stress_Pa);
-    oedometer->unload_to_stress_Pa =
-        condition.unload_to_stress_Pa.value_or(oedometer->unload_to_stress_Pa);
-  }
+  const std::vector<Field> settings = fields(config);
+  for (const ConditionNumbers& given : condition.numbers)
+    if (const Field* field = find_field(settings, given.column)) set_numbers(*field, given.values);
 }
 
 std::string feature_name(const SoilTarget& target, const TestCondition& condition) {
-  const bool per_stress = target.test_id == "direct_shear" &&
-                          (target.observable_id == "peak_shear_stress_Pa" ||
-                           target.observable_id == "residual_shear_stress_Pa");
-  if (!per_stress || condition.normal_stress_Pa.size() != 1) return target.observable_id;
-  return fmt::format("{}@{:.0f}", target.observable_id, condition.normal_stress_Pa.front());
+  const KnownObservable* known =
+      soil_vocabulary().observable(target.test_id, target.observable_id);
+  const bool per_stress = known && known->need == ConditionNeed::one_normal_stress;
+  const std::vector<double> stresses = condition.values("normal_stress_Pa");
+  if (!per_stress || stresses.size() != 1) return target.observable_id;
+  return fmt::format("{}@{:.0f}", target.observable_id, stresses.front());
 }
 
 std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,

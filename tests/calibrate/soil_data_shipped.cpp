@@ -87,8 +87,8 @@ struct LogMoments {
 
 /// Mean and sample deviation of ln M, M = (p2 - p1) v0 / (slope ln(p2/p1)).
 LogMoments log_moduli(const std::vector<double>& slope, double v0, const TestCondition& condition) {
-  const double from_Pa = *condition.load_from_stress_Pa;
-  const double to_Pa = *condition.load_to_stress_Pa;
+  const double from_Pa = *condition.number("load_from_stress_Pa");
+  const double to_Pa = *condition.number("load_to_stress_Pa");
   std::vector<double> logs;
   for (const double s : slope) {
     logs.push_back(std::log((to_Pa - from_Pa) * v0 / (s * std::log(to_Pa / from_Pa))));
@@ -161,7 +161,7 @@ TEST_CASE("Shipped soils: porosity and water content follow from density and ret
     CHECK_THAT(state(soil, "water_content_drained_volumetric"), WithinAbs(theta, 5.1e-5));
     // 5e-5 of rounding; the sandy loam averages two classes of density 1530 and 1540 (1e-4 more).
     CHECK_THAT(state(soil, "water_content_drained"), WithinAbs(theta * 1000.0 / density, 1.5e-4));
-    CHECK_THAT(*soil.condition("shear_drained")->suction_Pa, WithinRel(suction_Pa, 1e-12));
+    CHECK_THAT(*soil.condition("shear_drained")->number("suction_Pa"), WithinRel(suction_Pa, 1e-12));
   }
 }
 
