@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -14,6 +15,10 @@ namespace {
 std::size_t num_affordable(const SimulationLedger& ledger) {
   const std::size_t used = ledger.num_done + ledger.num_reserved;
   return used < ledger.max_simulations ? ledger.max_simulations - used : 0;
+}
+
+bool is_asked(const Target& target, TargetScope scope) {
+  return scope == TargetScope::all || target.holdout == (scope == TargetScope::holdouts);
 }
 
 Eigen::MatrixXd columns(const std::vector<std::vector<double>>& points) {
@@ -43,11 +48,12 @@ bool is_blocked(SimulationLedger& ledger) {
 }
 
 Evaluator::Evaluator(Simulator simulator, std::vector<Target> targets, std::string label,
-                     SimulationLedger& ledger)
+                     SimulationLedger& ledger, TargetScope scope)
     : simulator_(std::move(simulator)),
       targets_(std::move(targets)),
       label_(std::move(label)),
-      ledger_(ledger) {}
+      ledger_(ledger),
+      scope_(scope) {}
 
 std::vector<Evaluation> Evaluator::evaluate(const Eigen::MatrixXd& parameters, std::uint64_t seed) {
   const std::vector<Key> keys = new_keys(parameters, seed);
@@ -118,7 +124,11 @@ void Evaluator::check(Evaluation& evaluation) const {
                             targets_.size()));
   }
   for (std::size_t k = 0; k < targets_.size(); ++k) {
-    const double value = evaluation.features[static_cast<Eigen::Index>(k)];
+    double& value = evaluation.features[static_cast<Eigen::Index>(k)];
+    if (!is_asked(targets_[k], scope_)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     if (!std::isfinite(value)) {
       return fail(fmt::format("{} = {}: not finite", targets_[k].name, value));
     }

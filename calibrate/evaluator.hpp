@@ -67,18 +67,21 @@ void begin_stage(SimulationLedger& ledger, const std::string& stage);
 /// raises the flags above.
 bool is_blocked(SimulationLedger& ledger);
 
+/// Which targets a simulator answers; the features of the others are NaN and mean "not asked".
+enum class TargetScope { all, fitted, holdouts };
+
 /// A Simulator with a memory. Results are remembered by (parameters, seed), bit for bit, so
 /// nothing is simulated twice. When the ledger is blocked, remembered results are still given
 /// and everything else is `skipped`.
 class Evaluator {
  public:
-  /// @param label  "search" or "confirm", for the record of failures
+  /// @param label  "search", "confirm" or "hold-outs", for the record of failures
   /// @param ledger must outlive the evaluator
   Evaluator(Simulator simulator, std::vector<Target> targets, std::string label,
-            SimulationLedger& ledger);
+            SimulationLedger& ledger, TargetScope scope = TargetScope::all);
 
-  /// One Evaluation per column, in order. A completed run has finite features, and positive ones
-  /// for fitted targets with log_transform; otherwise it is failed.
+  /// One Evaluation per column, in order. A completed run has finite features of the targets in
+  /// scope, and positive ones for fitted targets with log_transform; otherwise it is failed.
   /// @shape parameters (num_parameters, num_members), physical
   /// @throws std::runtime_error if the simulator does not return one Evaluation per column
   std::vector<Evaluation> evaluate(const Eigen::MatrixXd& parameters, std::uint64_t seed);
@@ -95,6 +98,7 @@ class Evaluator {
   std::vector<Target> targets_;
   std::string label_;
   SimulationLedger& ledger_;
+  TargetScope scope_;
   std::map<Key, Evaluation> memory_;
 };
 

@@ -44,8 +44,9 @@ std::string under_determined_message(const FitContext& context) {
 // The last stages need these even if the search would use up the whole budget.
 std::size_t reserve_for_the_end(const FitContext& context) {
   const auto seeds = static_cast<std::size_t>(context.options.num_search_seeds);
-  const std::size_t reserve = static_cast<std::size_t>(context.options.num_fresh_seeds) +
-                              seeds * (1 + 2 * context.free.size());
+  const auto fresh = static_cast<std::size_t>(context.options.num_fresh_seeds);
+  const std::size_t around = 1 + 2 * context.free.size();
+  const std::size_t reserve = fresh + seeds * around + (context.holdout ? fresh + around : 0);
   return std::min(reserve, context.options.max_simulations / 2);
 }
 
@@ -77,11 +78,12 @@ void run_stages(FitContext& context) {
   run_search_rounds(context);  // 3. emulator and global search, checked by real runs
   run_local_starts(context);   // 4. Levenberg-Marquardt from the best real points
   run_bias(context);           // 5. larger or slower runs: correct and refit
+  find_conflicts(context);     // 6. what can be met alone, but not together
   context.ledger.num_reserved = 0;
   begin_stage(context.ledger, "uncertainty");
-  update_uncertainty(context);  // 6. covariance at the optimum
+  update_uncertainty(context);  // 7. covariance at the optimum
   report_parameters(context);
-  run_fresh(context);  // 7. seeds and hold-outs the fit has never seen
+  run_fresh(context);  // 8. seeds and hold-outs the fit has never seen
 }
 
 void set_termination(FitContext& context) {
@@ -134,22 +136,27 @@ void report_counts(FitContext& context) {
 }  // namespace
 
 FitSummary fit(const std::vector<Parameter>& parameters, const std::vector<Target>& targets,
-               const Simulator& search, const Simulator* confirm, const FitOptions& options) {
+               const Simulator& search, const Simulator* confirm, const FitOptions& options,
+               const Simulator* holdout) {
   FitSummary refused;
   refused.termination = Termination::bad_input;
   refused.message = joined(all_problems(parameters, targets, options));
   if (!refused.message.empty()) return refused;
 
   SimulationLedger ledger;
+  const TargetScope scope = holdout != nullptr ? TargetScope::fitted : TargetScope::all;
   FitContext context{.parameters = parameters,
                      .targets = targets,
                      .options = options,
                      .free = free_parameters(parameters),
                      .fitted = fitted_targets(targets),
                      .ledger = ledger,
-                     .search = Evaluator(search, targets, "search", ledger),
-                     .confirm = std::nullopt};
-  if (confirm != nullptr) context.confirm.emplace(*confirm, targets, "confirm", ledger);
+                     .search = Evaluator(search, targets, "search", ledger, scope),
+                     .confirm = std::nullopt,
+                     .holdout = std::nullopt};
+  if (confirm != nullptr) context.confirm.emplace(*confirm, targets, "confirm", ledger, scope);
+  if (holdout != nullptr)
+    context.holdout.emplace(*holdout, targets, "hold-outs", ledger, TargetScope::holdouts);
   prepare(context);
   if (context.summary.num_free > context.summary.num_independent && !options.force) {
     context.summary.termination = Termination::under_determined;

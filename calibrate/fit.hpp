@@ -30,8 +30,11 @@ namespace tilth {
 ///
 /// @param search   the cheap simulator used by all stages
 /// @param confirm  larger or slower runs of the same tests; null if there are none
+/// @param holdout  gives the hold-outs at the end, on fresh seeds and on the secants of one of them;
+///                 then the other two are asked for fitted targets only. Null: they give all.
 /// @throws what a simulator throws, and std::runtime_error if it breaks its contract
 FitSummary fit(const std::vector<Parameter>& parameters, const std::vector<Target>& targets,
-               const Simulator& search, const Simulator* confirm, const FitOptions& options);
+               const Simulator& search, const Simulator* confirm, const FitOptions& options,
+               const Simulator* holdout = nullptr);
 
 }  // namespace tilth

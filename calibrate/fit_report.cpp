@@ -165,6 +165,16 @@ void null_directions(const FitSummary& s, std::string& text) {
   }
 }
 
+// Why a target is out of reach, with the number.
+std::string reach_words(const TargetResult& t) {
+  if (!t.conflicts_with.empty())
+    return fmt::format("  (with {}: {} sigma at best)", t.conflicts_with,
+                       short_number(t.joint_misfit));
+  if (t.reachability == Reachability::unreachable)
+    return fmt::format("  (nearest run {} sigma off)", short_number(t.reach_gap));
+  return "";
+}
+
 void target_table(const std::vector<TargetResult>& targets, const char* title, std::string& text) {
   text += title;
   std::size_t width = 6;
@@ -176,8 +186,21 @@ void target_table(const std::vector<TargetResult>& targets, const char* title, s
     line(text, "{:<{}} {:<10} {:>11} {:>9} {:>11} {:>9} {:>9}  {}{}", t.name, width,
          to_string(t.provenance), number(t.value), short_number(t.sigma), number(t.simulated),
          short_number(t.seed_sd), short_number(t.residual), to_string(t.reachability),
-         t.log_transform ? "  (sigma and seed sd of ln)" : "");
+         reach_words(t) + (t.log_transform ? "  (sigma and seed sd of ln)" : ""));
   }
+}
+
+void conflict_table(const FitSummary& s, std::string& text) {
+  text += fmt::format("[[Conflicts]] (can be met alone but not together: no parameter set brings both "
+                      "within {:.1f} total sigma; on emulators)\n",
+                      conflict_limit);
+  constexpr std::size_t most = 12;
+  for (std::size_t k = 0; k < std::min(most, s.conflicts.size()); ++k) {
+    const TargetConflict& c = s.conflicts[k];
+    line(text, "{} and {}: {} sigma at best", c.first, c.second, short_number(c.misfit));
+  }
+  if (s.conflicts.size() > most) line(text, "and {} more pairs", s.conflicts.size() - most);
+  if (s.conflicts.empty()) line(text, "none found");
 }
 
 void bias_table(const FitSummary& s, std::string& text) {
@@ -205,6 +228,7 @@ std::string fit_report_text(const FitSummary& summary, const ReportContext& cont
   correlations(summary, text);
   null_directions(summary, text);
   target_table(summary.targets, "[[Targets]]\n", text);
+  conflict_table(summary, text);
   bias_table(summary, text);
   target_table(summary.holdouts, "[[Hold-out]] (predicted, never fitted)\n", text);
   return text;

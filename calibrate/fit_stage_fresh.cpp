@@ -30,11 +30,39 @@ Prediction predict(FitContext& context) {
 }
 
 // T, from the covariance of the parameters: sqrt(diag(J C J')).
-Eigen::VectorXd parameter_deviations(const FitContext& context) {
+Eigen::VectorXd parameter_deviations(const FitContext& context,
+                                     const std::optional<Secants>& secants) {
   const auto n = static_cast<Eigen::Index>(context.targets.size());
-  if (!context.uncertainty) return Eigen::VectorXd::Constant(n, not_known);
-  const Eigen::MatrixXd& jacobian = context.secants->jacobian;
-  return (jacobian * context.uncertainty->covariance * jacobian.transpose()).diagonal().cwiseSqrt();
+  if (!context.uncertainty || !secants) return Eigen::VectorXd::Constant(n, not_known);
+  const Eigen::MatrixXd& jacobian = secants->jacobian;
+  const Eigen::MatrixXd half = jacobian * context.uncertainty->covariance;
+  return half.cwiseProduct(jacobian).rowwise().sum().cwiseSqrt();
+}
+
+// Hold-outs with a simulator of their own: on the fresh seeds, and on the secants of the first.
+void predict_holdouts(FitContext& context, Prediction& prediction, Eigen::VectorXd& parameter_sd) {
+  const Optimum& optimum = *context.optimum;
+  const std::vector<std::uint64_t> seeds =
+      stage_seeds(context.options, SeedUse::fresh, context.options.num_fresh_seeds);
+  const Eigen::MatrixXd samples = repeat_on_seeds(context, *context.holdout, optimum.unit, seeds);
+  if (samples.cols() == 0) {
+    context.summary.warnings.emplace_back("no run of the hold-outs completed");
+    return;
+  }
+  const Eigen::VectorXd steps =
+      secant_steps(context.parameters, context.options.log_step, context.options.linear_step);
+  const Eigen::VectorXd own_sd = parameter_deviations(
+      context, paired_secants(*context.holdout, context.parameters, context.targets, optimum.unit,
+                              steps, std::span(seeds).first(1)));
+  const Eigen::VectorXd variance = holdout_variance(context, samples, prediction.variance_of_one);
+  for (std::size_t target = 0; target < context.targets.size(); ++target) {
+    if (!context.targets[target].holdout) continue;
+    const auto k = static_cast<Eigen::Index>(target);
+    prediction.mean[k] = samples.row(k).mean();
+    prediction.variance_of_one[k] = variance[k];
+    prediction.variance[k] = variance[k] / static_cast<double>(samples.cols());
+    parameter_sd[k] = own_sd[k];
+  }
 }
 
 TargetResult compare(const FitContext& context, const Prediction& prediction,
@@ -55,9 +83,15 @@ TargetResult compare(const FitContext& context, const Prediction& prediction,
     result.sigma_total = std::hypot(result.sigma_total, parameter_sd[k]);
   }
   result.residual = (prediction.mean[k] - transformed(t, t.value)) / result.sigma_total;
-  result.bias = context.bias[k];
+  result.bias = std::isnan(context.bias[k]) ? 0.0 : context.bias[k];
   result.bias_error = context.bias_error[k];
-  if (!t.holdout) set_reachability(context, target, result);
+  if (t.holdout) return result;
+  set_reachability(context, target, result);
+  if (const TargetConflict* conflict = context.summary.trend_conflict(t.name)) {
+    result.reachability = Reachability::unreachable;
+    result.conflicts_with = conflict->first == t.name ? conflict->second : conflict->first;
+    result.joint_misfit = conflict->misfit;
+  }
   return result;
 }
 
@@ -66,8 +100,9 @@ TargetResult compare(const FitContext& context, const Prediction& prediction,
 void run_fresh(FitContext& context) {
   if (!context.optimum) return;
   begin_stage(context.ledger, "fresh seeds");
-  const Prediction prediction = predict(context);
-  const Eigen::VectorXd parameter_sd = parameter_deviations(context);
+  Prediction prediction = predict(context);
+  Eigen::VectorXd parameter_sd = parameter_deviations(context, context.secants);
+  if (context.holdout) predict_holdouts(context, prediction, parameter_sd);
   FitSummary& summary = context.summary;
   double fitted_sum = 0.0;
   double holdout_sum = 0.0;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 the Tilth authors
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "calibrate/fit_stages.hpp"
 #include "calibrate/seed_average.hpp"
@@ -19,28 +20,48 @@ Eigen::VectorXd sample_variance(const Eigen::MatrixXd& samples) {
   return rest.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1);
 }
 
-// What makes variances of different targets comparable: T is relative already on a log scale,
-// else the size of the mean simulated value.
-double pooling_scale(const Target& target, double mean) {
-  if (target.log_transform) return 1.0;
+// A statistic read from at least three fitted tests is pooled over them; the rest over each other.
+constexpr std::size_t own_pool = 3;
+
+std::string pool_of(const FitContext& context, const Target& target) {
+  const auto same = [&](std::size_t k) {
+    return context.targets[k].statistic == target.statistic;
+  };
+  const bool own = static_cast<std::size_t>(std::ranges::count_if(context.fitted, same)) >= own_pool;
+  return own ? target.statistic : "";
+}
+
+// What makes variances of one pool comparable: T is relative already on a log scale, and one
+// statistic has one unit; else the size of the mean simulated value.
+double pooling_scale(const Target& target, const std::string& pool, double mean) {
+  if (target.log_transform || !pool.empty()) return 1.0;
   return mean != 0.0 ? std::abs(mean) : target.sigma;
 }
 
-// Mean relative variance of the fitted targets, brought back to each target's scale.
+// Mean variance of the fitted targets of each pool, brought back to each target's scale.
 Eigen::VectorXd pooled_variance(const FitContext& context, const Eigen::MatrixXd& samples) {
   const Eigen::VectorXd variance = sample_variance(samples);
-  const Eigen::VectorXd mean = samples.rowwise().mean();
-  Eigen::VectorXd scale(mean.size());
+  std::vector<std::string> pool;
+  Eigen::VectorXd scale(samples.rows());
   for (std::size_t k = 0; k < context.targets.size(); ++k) {
     const auto index = static_cast<Eigen::Index>(k);
-    scale[index] = pooling_scale(context.targets[k], mean[index]);
+    pool.push_back(pool_of(context, context.targets[k]));
+    scale[index] = pooling_scale(context.targets[k], pool[k], samples.row(index).mean());
   }
-  double pooled = 0.0;
+  std::map<std::string, std::pair<double, int>> sums;
   for (const std::size_t target : context.fitted) {
     const auto k = static_cast<Eigen::Index>(target);
-    pooled += variance[k] / (scale[k] * scale[k]) / static_cast<double>(context.fitted.size());
+    auto& [sum, count] = sums[pool[target]];
+    sum += variance[k] / (scale[k] * scale[k]);
+    ++count;
   }
-  return pooled * scale.array().square();
+  Eigen::VectorXd pooled(samples.rows());
+  for (std::size_t k = 0; k < context.targets.size(); ++k) {
+    const auto index = static_cast<Eigen::Index>(k);
+    const auto& [sum, count] = sums[pool[k]];
+    pooled[index] = count > 0 ? sum / count * scale[index] * scale[index] : not_known;
+  }
+  return pooled;
 }
 
 // Sample correlations of the fitted targets, moderated toward their mean like the variances: one
@@ -68,6 +89,22 @@ Eigen::MatrixXd moderated_correlation(const FitContext& context, const Eigen::Ma
 Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior) {
   const auto freedom = static_cast<double>(std::max<Eigen::Index>(0, samples.cols() - 1));
   return (prior_freedom * prior + freedom * sample_variance(samples)) / (prior_freedom + freedom);
+}
+
+Eigen::VectorXd holdout_variance(const FitContext& context, const Eigen::MatrixXd& samples,
+                                 const Eigen::VectorXd& fitted_variance) {
+  Eigen::VectorXd prior = sample_variance(samples);
+  for (std::size_t target = 0; target < context.targets.size(); ++target) {
+    double sum = 0.0;
+    int count = 0;
+    for (const std::size_t other : context.fitted) {
+      if (context.targets[other].statistic != context.targets[target].statistic) continue;
+      sum += fitted_variance[static_cast<Eigen::Index>(other)];
+      ++count;
+    }
+    if (count > 0) prior[static_cast<Eigen::Index>(target)] = sum / count;
+  }
+  return moderated_variance(samples, prior);
 }
 
 Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,

@@ -17,30 +17,6 @@ constexpr double same_point = 0.02;    // closer points of the unit cube are not
 constexpr double spread_radius = 0.1;  // half-width of the cloud around the emulator's optimum
 constexpr int evaluations_per_dimension = 400;
 
-// One emulator per fitted target, on the points completed so far.
-std::vector<Emulator> make_emulators(const FitContext& context) {
-  std::vector<const KnownPoint*> completed;
-  for (const KnownPoint& point : context.points) {
-    if (point.features) completed.push_back(&point);
-  }
-  const auto num_free = static_cast<Eigen::Index>(context.free.size());
-  const auto n = static_cast<Eigen::Index>(completed.size());
-  std::vector<Emulator> emulators;
-  if (n < min_emulator_points(EmulatorTrend::linear, num_free)) return emulators;
-
-  Eigen::MatrixXd points(num_free, n);
-  Eigen::MatrixXd values(static_cast<Eigen::Index>(context.targets.size()), n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    points.col(i) = completed[static_cast<std::size_t>(i)]->unit;
-    values.col(i) = *completed[static_cast<std::size_t>(i)]->features;
-  }
-  for (const std::size_t k : context.fitted) {
-    emulators.emplace_back(points, values.row(static_cast<Eigen::Index>(k)).transpose(),
-                           EmulatorOptions{});
-  }
-  return emulators;
-}
-
 // chi-square of the emulated model. With `doubtful`, each residual is divided by sigma_total and
 // the emulator's own uncertainty together, which makes unknown regions worth a visit.
 double emulated_chi_square(const FitContext& context, const std::vector<Emulator>& emulators,
@@ -128,6 +104,29 @@ Eigen::MatrixXd candidates(const FitContext& context, const std::vector<Emulator
 }
 
 }  // namespace
+
+std::vector<Emulator> make_emulators(const FitContext& context) {
+  std::vector<const KnownPoint*> completed;
+  for (const KnownPoint& point : context.points) {
+    if (point.features) completed.push_back(&point);
+  }
+  const auto num_free = static_cast<Eigen::Index>(context.free.size());
+  const auto n = static_cast<Eigen::Index>(completed.size());
+  std::vector<Emulator> emulators;
+  if (n < min_emulator_points(EmulatorTrend::linear, num_free)) return emulators;
+
+  Eigen::MatrixXd points(num_free, n);
+  Eigen::MatrixXd values(static_cast<Eigen::Index>(context.targets.size()), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    points.col(i) = completed[static_cast<std::size_t>(i)]->unit;
+    values.col(i) = *completed[static_cast<std::size_t>(i)]->features;
+  }
+  for (const std::size_t k : context.fitted) {
+    emulators.emplace_back(points, values.row(static_cast<Eigen::Index>(k)).transpose(),
+                           EmulatorOptions{});
+  }
+  return emulators;
+}
 
 void run_search_rounds(FitContext& context) {
   if (!context.optimum || context.options.num_rounds == 0) return;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/emulator.hpp"
 #include "calibrate/evaluator.hpp"
 #include "calibrate/fit_options.hpp"
 #include "calibrate/fit_summary.hpp"
@@ -46,6 +47,7 @@ struct FitContext {
   SimulationLedger& ledger;
   Evaluator search;
   std::optional<Evaluator> confirm;
+  std::optional<Evaluator> holdout;
   FitSummary summary{};
 
   std::vector<KnownPoint> points{};    ///< start first, then design, then search rounds
@@ -82,6 +84,16 @@ std::size_t num_priors(const FitContext& context);
 /// Books chi-square in the history.
 void record_cost(FitContext& context, double chi_square);
 
+// fit_stage_conflicts.cpp
+/// Pairs of fitted targets that the model can meet alone but not together: no point of the parameter
+/// box brings both within conflict_limit sigma_total, on the emulators of all search runs.
+///   misfit = min over u of max(|r_a(u)|, |r_b(u)|)
+void find_conflicts(FitContext& context);
+
+// fit_stage_search.cpp
+/// One emulator per fitted target on the points completed so far; empty with too few of them.
+std::vector<Emulator> make_emulators(const FitContext& context);
+
 // fit_stage_design.cpp
 void run_design(FitContext& context);
 /// Simulates points on the first search seed and adds them to context.points.
@@ -92,6 +104,10 @@ std::vector<std::size_t> ranked_points(const FitContext& context);
 void set_reachability(const FitContext& context, std::size_t target, TargetResult& result);
 
 // fit_stage_noise.cpp
+/// Moderated variances of hold-outs: the prior is the variance of fitted targets of the same
+/// statistic where there are any, else the sample's own.
+Eigen::VectorXd holdout_variance(const FitContext& context, const Eigen::MatrixXd& samples,
+                                 const Eigen::VectorXd& fitted_variance);
 /// Moderated variances: (d0 v_prior + df v) / (d0 + df), d0 = 8, df = runs - 1.
 /// @shape samples (num_targets, num_runs), prior (num_targets)
 Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior);

@@ -67,6 +67,13 @@ bool FitSummary::is_usable() const {
 
 bool FitSummary::holdout_failed() const { return holdout_rms > holdout_limit; }
 
+const TargetConflict* FitSummary::trend_conflict(const std::string& target) const {
+  const auto found = std::ranges::find_if(conflicts, [&](const TargetConflict& c) {
+    return c.same_statistic && (c.first == target || c.second == target);
+  });
+  return found == conflicts.end() ? nullptr : &*found;
+}
+
 bool FitSummary::has_unreachable_target() const {
   return std::any_of(targets.begin(), targets.end(), [](const TargetResult& target) {
     return target.reachability == Reachability::unreachable;

@@ -80,9 +80,20 @@ struct TargetResult {
   double parameter_sd = not_known;  ///< T, from the covariance; in sigma_total of hold-outs only
   Reachability reachability = Reachability::unknown;  ///< fitted targets only
   double reach_gap = not_known;   ///< distance outside the range / sigma_total; < 0 inside
+  std::string conflicts_with;       ///< a target that cannot be met together with this one; or empty
+  double joint_misfit = not_known;  ///< of the two, see TargetConflict
   double bias = 0.0;              ///< T, mean confirm - mean search at the optimum
   double bias_error = not_known;  ///< T, its standard error; NaN without a confirming simulator
 };
+
+/// Two fitted targets that can each be met, but not both with one parameter set.
+struct TargetConflict {
+  std::string first;
+  std::string second;
+  double misfit = not_known;    ///< the smaller they can both be made, in sigma_total; > conflict_limit
+  bool same_statistic = false;  ///< one observable under two conditions: the model's trend is wrong
+};
+inline constexpr double conflict_limit = 2.0;
 
 /// One local search.
 struct StartResult {
@@ -111,6 +122,8 @@ struct FitSummary {
   std::vector<FittedParameter> parameters;  ///< all, in table order
   std::vector<TargetResult> targets;        ///< the fitted ones, in table order
   std::vector<TargetResult> holdouts;
+
+  std::vector<TargetConflict> conflicts;  ///< largest misfit first
 
   double chi_square_start = not_known;  ///< start values, first search seed
   double chi_square = not_known;  ///< optimum, search seeds, priors included: what was minimised
@@ -147,7 +160,9 @@ struct FitSummary {
   bool is_usable() const;
   /// Did the hold-out criterion fail? (false without hold-outs)
   bool holdout_failed() const;
-  /// Is any fitted target unreachable?
+  /// Largest conflict of a target with the same statistic under another condition; null if none.
+  const TargetConflict* trend_conflict(const std::string& target) const;
+  /// Is any fitted target unreachable, alone or together with one of its own statistic?
   bool has_unreachable_target() const;
   /// Values of all parameters, physical, in table order.
   Eigen::VectorXd values() const;

@@ -20,6 +20,8 @@ std::string unmet_need(const TestCondition& condition, const KnownObservable& ob
     if (condition.values(column).empty()) return column;
   const std::vector<double> normal = condition.values("normal_stress_Pa");
   const std::set<double> stresses(normal.begin(), normal.end());
+  const std::vector<double> cell = condition.values("cell_pressure_Pa");
+  const std::set<double> cells(cell.begin(), cell.end());
   const auto from = condition.number("load_from_stress_Pa");
   const auto to = condition.number("load_to_stress_Pa");
   const auto back = condition.number("unload_to_stress_Pa");
@@ -31,6 +33,10 @@ std::string unmet_need(const TestCondition& condition, const KnownObservable& ob
     case ConditionNeed::three_normal_stresses:
       return stresses.size() >= 3 ? ""
                                   : "normal_stress_Pa with at least three, as 10000;20000;40000";
+    case ConditionNeed::one_cell_pressure:
+      return cells.size() == 1 ? "" : "cell_pressure_Pa with one number";
+    case ConditionNeed::two_cell_pressures:
+      return cells.size() >= 2 ? "" : "cell_pressure_Pa with at least two, as 50000;100000;200000";
     case ConditionNeed::load_stresses:
       return from && to && *from < *to ? "" : "load_from_stress_Pa below load_to_stress_Pa";
     case ConditionNeed::unload_stresses:

@@ -90,6 +90,15 @@ struct SoilTarget {
   std::size_t line = 0;                         ///< in measurements.csv
 };
 
+/// One measured curve of curves.csv, one reading per row.
+struct MeasuredCurve {
+  std::string test_id;
+  std::string condition_id;
+  std::vector<std::string> columns;  ///< end in their SI units; see SoilVocabulary::curves
+  std::vector<std::vector<double>> rows;
+  std::size_t line = 0;  ///< of the first row
+};
+
 /// Standard deviation in the unit of the value: sigma, sigma |value|, sigma, or for log
 /// |value| sinh(sigma), half the distance from value e^-sigma to value e^sigma.
 double sigma_of(const SoilTarget& target);
@@ -141,6 +150,7 @@ struct SoilData {
   std::vector<SoilTarget> targets;  ///< in force, hold-outs included, in the order of the file
   std::vector<SupersededTarget> superseded;
   std::vector<SoilParameter> parameters;
+  std::vector<MeasuredCurve> curves;  ///< empty where the folder has no curves.csv
   std::vector<std::string> warnings;  ///< usable, but the report must say so
 
   const TestCondition* condition(std::string_view condition_id) const;  ///< null when absent
@@ -161,7 +171,8 @@ std::size_t num_free_parameters(const std::vector<SoilParameter>& parameters);
 /// Share of the targets of the fit (hold-outs left out) that are measured, in [0, 1]; 0 for none.
 double measured_share(const std::vector<SoilTarget>& targets);
 
-/// Reads soil.json, conditions.csv, measurements.csv and parameters.csv of a folder.
+/// Reads soil.json, conditions.csv, measurements.csv, parameters.csv and, where there is one,
+/// curves.csv of a folder.
 ///
 /// Rows of lower provenance are superseded: of all rows with the same testId, observableId,
 /// conditionId, xId and x only those of the best provenance stay in `targets`.

@@ -30,6 +30,12 @@ std::vector<SoilParameter> read_parameters(const std::filesystem::path& file,
                                            const SoilVocabulary& vocabulary,
                                            std::vector<std::string>& problems);
 
+/// Rows of curves.csv by test and condition; nothing where there is no such file. A mistake that
+/// goes through a whole curve (a wrong unit) is one sentence.
+std::vector<MeasuredCurve> read_curves(const std::filesystem::path& file, const SoilData& soil,
+                                       const SoilVocabulary& vocabulary,
+                                       std::vector<std::string>& problems);
+
 /// What is wrong with the numbers of one parameter, whichever file they came from.
 /// @param known  its physically possible range; may be null
 std::vector<std::string> parameter_problems(const SoilParameter& parameter,

@@ -39,6 +39,7 @@ std::vector<Target> fit_targets(const SoilData& soil) {
     target.holdout = row.holdout;
     target.observation_group =
         independent[i].empty() ? row.observation_groups.front() : independent[i];
+    target.statistic = row.test_id + "/" + row.observable_id;
     target.provenance = row.origin.provenance;
     target.source = row.origin.source + ", " + row.origin.locator;
     targets.push_back(std::move(target));

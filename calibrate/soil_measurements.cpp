@@ -67,7 +67,7 @@ void read_sigma(CsvRowReader& row, SoilTarget& target) {
 }
 
 void check_value(CsvRowReader& row, const SoilTarget& target, const KnownObservable& known) {
-  if (target.value < 0.0) {
+  if (target.value < 0.0 && known.plausible_lower >= 0.0) {
     row.problem(fmt::format("{} = {}: must not be negative (compression is positive)",
                             target.observable_id, target.value));
     return;

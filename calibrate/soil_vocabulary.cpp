@@ -31,9 +31,18 @@ SoilVocabulary built_in() {
       {"confined_compression", "reload_modulus_Pa", 1e5, 1e9, unload_stresses},
       {"confined_compression", "radial_stress_ratio", 0.05, 2.0, load_stresses},
       {"confined_compression", "compression_strain", 1e-4, 0.6, load_stresses},
+      {"drained_triaxial", "initial_modulus_Pa", 1e5, 1e9, one_cell_pressure},
+      {"drained_triaxial", "peak_stress_ratio", 0.2, 2.5, one_cell_pressure},
+      {"drained_triaxial", "strain_at_peak", 1e-3, 0.4, one_cell_pressure},
+      {"drained_triaxial", "end_stress_ratio", 0.2, 2.5, one_cell_pressure},
+      {"drained_triaxial", "dilation_rate", -0.5, 2.0, one_cell_pressure},
+      {"drained_triaxial", "final_volumetric_strain", -0.3, 0.3, one_cell_pressure},
+      {"drained_triaxial", "friction_angle_rad", 0.05, 1.1, two_cell_pressures},
+      {"drained_triaxial", "cohesion_Pa", 50.0, 2e5, two_cell_pressures},
+      {"drained_triaxial", "stiffness_exponent", -0.2, 1.5, two_cell_pressures},
   };
   words.parameters = {
-      {"bond_modulus_Pa", 1.0, 1e12},
+      {"bond_modulus_Pa", 0.0, 1e12},
       {"contact_modulus_Pa", 1.0, 1e12},
       {"bond_tensile_strength_Pa", 0.0, 1e10},
       {"bond_cohesion_Pa", 0.0, 1e10},
@@ -55,10 +64,20 @@ SoilVocabulary built_in() {
       {"depth_m", 0.0, 3.0},
       {"particle_radius_m", 1e-6, 1.0},
       {"normal_stress_Pa", 100.0, 1e7, true},
+      {"cell_pressure_Pa", 1e3, 5e6, true},
+      {"relative_density", 0.0, 1.0, true},
       {"load_from_stress_Pa", 0.0, 1e7},
       {"load_to_stress_Pa", 100.0, 1e7},
       {"unload_to_stress_Pa", 0.0, 1e7},
   };
+  // Upper bounds of stress let no usual test survive a factor of 1000; the lower ones catch kPa.
+  words.curves = {{"drained_triaxial",
+                   {{"axial_strain", 0.0, 0.6},
+                    {"volumetric_strain", -0.4, 0.4},
+                    {"axial_stress_Pa", 1e3, 2e7},
+                    {"radial_stress_Pa", 1e3, 5e6}},
+                   "radial_stress_Pa",
+                   "cell_pressure_Pa"}};
   return words;
 }
 

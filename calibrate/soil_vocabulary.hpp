@@ -14,6 +14,8 @@ enum class ConditionNeed {
   none,
   one_normal_stress,      ///< normal_stress_Pa with one number
   three_normal_stresses,  ///< normal_stress_Pa with at least three different numbers
+  one_cell_pressure,      ///< cell_pressure_Pa with one number
+  two_cell_pressures,     ///< cell_pressure_Pa with at least two different numbers
   load_stresses,          ///< load_from_stress_Pa < load_to_stress_Pa
   unload_stresses         ///< load_to_stress_Pa > unload_to_stress_Pa
 };
@@ -43,10 +45,26 @@ struct KnownParameter {
   double upper = 0.0;
 };
 
+/// A column of measured curves.
+struct KnownCurveColumn {
+  std::string name;  ///< ends in its SI unit
+  double plausible_lower = 0.0;
+  double plausible_upper = 0.0;
+};
+
+/// What a curve of curves.csv must look like.
+struct KnownCurve {
+  std::string test_id;
+  std::vector<KnownCurveColumn> columns;  ///< the first must increase from row to row
+  std::string held_column;                ///< is held constant in the test ...
+  std::string held_at;                    ///< ... at this column of conditions.csv
+};
+
 struct SoilVocabulary {
   std::vector<KnownObservable> observables;
   std::vector<KnownParameter> parameters;
   std::vector<KnownConditionColumn> condition_columns;
+  std::vector<KnownCurve> curves;
 
   std::vector<std::string> test_ids() const;  ///< each once
   std::vector<std::string> observable_ids(std::string_view test_id) const;

@@ -26,6 +26,8 @@ struct Target {
   bool holdout = false;        ///< never enters the fit, only predicted at its end
   /// Numbers derived from each other share a group and count as one observation; empty = own name.
   std::string observation_group;
+  /// What is read from like tests under other conditions; seed scatter is pooled over it. May be empty.
+  std::string statistic;
   Provenance provenance = Provenance::synthetic;
   std::string source;  ///< citation and locator
 };

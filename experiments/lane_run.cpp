@@ -55,6 +55,22 @@ void LaneRun::finish(int lane, RunStatus status, const std::string& message) {
   model_changed(workspace);
 }
 
+void set_time_step(LaneRun& run, int lane, double dt_s) {
+  run.specimen.model.lanes[static_cast<std::size_t>(lane)].dt_s = dt_s;
+  run.results[static_cast<std::size_t>(lane)].dt_s = dt_s;
+  model_changed(run.workspace);
+}
+
+void set_friction(LaneRun& run, int lane, double friction) {
+  run.specimen.model.lanes[static_cast<std::size_t>(lane)].friction = friction;
+  model_changed(run.workspace);
+}
+
+void set_local_damping(LaneRun& run, int lane, double local_damping) {
+  run.specimen.model.lanes[static_cast<std::size_t>(lane)].local_damping = local_damping;
+  model_changed(run.workspace);
+}
+
 void run_protocol(LaneRun& run, int interval_steps, std::int64_t max_steps,
                   const std::atomic<bool>* stop, const LaneProtocol& protocol) {
   const auto any_active = [&run] {

@@ -33,6 +33,15 @@ struct LaneRun {
   void finish(int lane, RunStatus status, const std::string& message);
 };
 
+/// Changes the time step of one lane between intervals; servos must be told anew.
+void set_time_step(LaneRun& run, int lane, double dt_s);
+
+/// Changes the friction between the grains of one lane between intervals.
+void set_friction(LaneRun& run, int lane, double friction);
+
+/// Changes the local damping of one lane between intervals.
+void set_local_damping(LaneRun& run, int lane, double local_damping);
+
 /// Called once per interval for every active lane; ends a lane with run.finish().
 using LaneProtocol = std::function<void(LaneRun& run, int lane)>;
 

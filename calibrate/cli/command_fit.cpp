@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <thread>
@@ -186,10 +187,13 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   ProgressDisplay display(terminal, [&log](const std::string& line) { log.info(line); });
   job.options.progress = [&display](const Progress& p) { display.show(p); };
   job.options.should_stop = [&stop] { return stop.load(); };
-  const Simulator search = dem_simulator(job.soil, job.search, context);
-  const Simulator confirm = dem_simulator(job.soil, job.confirm, context);
+  using enum TargetScope;
+  const Simulator search = dem_simulator(job.soil, job.search, context, fitted);
+  const Simulator confirm = dem_simulator(job.soil, job.confirm, context, fitted);
+  const Simulator holdout = dem_simulator(job.soil, job.confirm, context, holdouts);
+  const bool has_holdouts = std::ranges::any_of(job.soil.targets, &SoilTarget::holdout);
   FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
-                           job.options);
+                           job.options, has_holdouts ? &holdout : nullptr);
   display.finish();
   if (!summary.parameters.empty()) show_ties(job.soil, summary);
 

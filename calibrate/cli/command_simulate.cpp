@@ -62,7 +62,7 @@ void draw(const std::string& id, const std::vector<std::uint64_t>& seeds,
   const CurveStyle style = curve_style(id);
   for (const Curve& first : results.front().curves) {
     CurveFigure figure{fmt::format("{}, {}", id, first.name), style.x_label, style.y_label,
-                       style.x_column, style.y_column, style.x_scale, style.y_scale, {}, {}};
+                       style.x_column, style.y_column, style.x_scale, style.y_scale, true, {}, {}};
     for (std::size_t k = 0; k < results.size(); ++k)
       for (const Curve& c : results[k].curves)
         if (c.name == first.name)

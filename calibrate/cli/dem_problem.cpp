@@ -13,23 +13,13 @@
 namespace tilth {
 namespace {
 
-/// Two conditions that give a test the same setup share its runs.
-bool same_setup(TestConfig a, TestConfig b) {
-  if (a.index() != b.index()) return false;
-  const std::vector<Field> left = fields(a);
-  const std::vector<Field> right = fields(b);
-  return std::ranges::equal(left, right, [](const Field& x, const Field& y) {
-    return field_text(x) == field_text(y);
-  });
-}
-
 /// @throws ConfigError naming the condition and everything the test cannot be run with
-void check_setup(TestConfig& config, const TestCondition& condition) {
-  std::vector<std::string> problems = range_problems(fields(config));
-  for (std::string& p : problems)
+void check_setup(const TestConfig& config, const TestCondition& condition) {
+  std::vector<std::string> found = problems(config);
+  for (std::string& p : found)
     p = fmt::format("condition '{}' (conditions.csv:{}) of {}: {}", condition.id, condition.line,
                     test_id(config), p);
-  if (!problems.empty()) throw ConfigError(std::move(problems));
+  if (!found.empty()) throw ConfigError(std::move(found));
 }
 
 /// Results of all tests, [test][member].
@@ -57,17 +47,20 @@ Evaluation evaluation_of(const std::vector<PlannedTest>& tests, const TestResult
 
 }  // namespace
 
-std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity) {
+std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity, TargetScope scope) {
   std::vector<PlannedTest> tests;
   for (std::size_t k = 0; k < soil.targets.size(); ++k) {
     const SoilTarget& target = soil.targets[k];
+    const bool wanted =
+        scope == TargetScope::all || target.holdout == (scope == TargetScope::holdouts);
+    if (!wanted) continue;
     const TestCondition* condition = soil.condition(target.condition_id);
     if (!condition) throw ConfigError({label(target) + ": its condition is not in conditions.csv"});
     TestConfig config = virtual_test(target.test_id, fidelity);
     apply_condition(config, *condition);
     check_setup(config, *condition);
     auto test =
-        std::ranges::find_if(tests, [&](const auto& t) { return same_setup(t.config, config); });
+        std::ranges::find_if(tests, [&](auto& t) { return join_series(t.config, config); });
     if (test == tests.end()) {
       tests.push_back({config, target.condition_id, {}});
       test = tests.end() - 1;
@@ -100,8 +93,9 @@ RunOptions run_options(const RunContext& context) {
   return options;
 }
 
-Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context) {
-  return [&soil, &context, tests = plan_tests(soil, fidelity)](const Eigen::MatrixXd& parameters,
+Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
+                        TargetScope scope) {
+  return [&soil, &context, tests = plan_tests(soil, fidelity, scope)](const Eigen::MatrixXd& parameters,
                                                                std::uint64_t seed) {
     std::vector<SoilMaterial> members;
     for (Eigen::Index m = 0; m < parameters.cols(); ++m)

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "calibrate/cli/virtual_test.hpp"
+#include "calibrate/evaluator.hpp"
 #include "calibrate/simulator.hpp"
 
 namespace tilth {
@@ -21,8 +22,9 @@ struct PlannedTest {
   std::vector<Answer> answers;
 };
 
-/// The tests that answer all targets of a soil, each test and condition once.
-std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity);
+/// The tests that answer the targets of a soil in scope, each test and condition once.
+std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity,
+                                    TargetScope scope = TargetScope::all);
 
 /// Material of one parameter column (SoilData::parameters order), ties applied.
 /// @throws ConfigError if a parameter of the table is not one of the model
@@ -40,7 +42,9 @@ struct RunContext {
 RunOptions run_options(const RunContext& context);
 
 /// Simulator over the planned tests: features in target order, one packing seed per call. A member
-/// fails with the first failing test's reason. Soil and context must outlive it.
-Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context);
+/// fails with the first failing test's reason; targets out of scope are NaN. Soil and context must
+/// outlive it.
+Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
+                        TargetScope scope = TargetScope::all);
 
 }  // namespace tilth

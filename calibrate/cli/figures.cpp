@@ -14,6 +14,15 @@ namespace {
 
 constexpr const char* colors[] = {"#1b6ca8", "#d1495b", "#3d8b37", "#8f5fbf", "#c77d0a", "#444444"};
 
+/// More rows than this stand close, with one-line labels.
+constexpr std::size_t many_rows = 30;
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text;
+}
+
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -84,7 +93,8 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
                                 first ? "title " + quoted(s.label) : "notitle"));
   }
   if (plots.empty()) return "there is no curve to draw";
-  script += "set yrange [0:*]\nset xrange [0:*]\nplot ";
+  script += figure.y_from_zero ? "set yrange [0:*]\n" : "set yrange [*:*]\nset xzeroaxis\n";
+  script += "set xrange [0:*]\nplot ";
   for (std::size_t k = 0; k < plots.size(); ++k) script += (k ? ", " : "") + plots[k];
   return run_gnuplot(script + "\n", svg);
 }
@@ -92,14 +102,15 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
 std::string draw_targets(const std::string& title, const std::vector<TargetRow>& rows,
                          const std::filesystem::path& svg) {
   if (rows.empty()) return "there is no target to draw";
-  std::string script = header(svg, 180 + 54 * static_cast<int>(rows.size()));
+  const int row_height = rows.size() > many_rows ? 20 : 54;
+  std::string script = header(svg, 180 + row_height * static_cast<int>(rows.size()));
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double y = static_cast<double>(rows.size() - k);
     const TargetRow& r = rows[k];
-    tics += fmt::format("{}{} {}", k ? ", " : "", quoted(r.label), y);
+    tics += fmt::format("{}{} {}", k ? ", " : "", quoted(rows.size() > many_rows ? one_line(r.label) : r.label), y);
     if (!std::isfinite(r.residual)) continue;
     (r.holdout ? held : fitted).push_back({r.residual, y, r.seed_sd});
     reach = std::max(reach, std::abs(r.residual) + r.seed_sd + 0.5);

@@ -28,6 +28,7 @@ struct CurveFigure {
   std::size_t y_column = 1;
   double x_scale = 1.0;  ///< human units: strain in %, displacement in mm
   double y_scale = 1.0;  ///< stress in kPa
+  bool y_from_zero = true;
   struct Series {
     std::string label;
     int color = 0;  ///< seeds of one kind share a colour; only the first of a colour is in the key

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "calibrate/cli/figures.hpp"
 #include "calibrate/cli/run_folder.hpp"
+#include "calibrate/cli/triaxial_figures.hpp"
 #include "calibrate/parallel.hpp"
 #include "calibrate/soil_fit.hpp"
 
@@ -71,24 +74,54 @@ std::vector<FigureMark> stress_marks(const SoilData& soil, const PlannedTest& te
   return marks;
 }
 
+std::string kind_of(const Rerun& run, Fidelity first) {
+  return fmt::format("simulated, {} specimen{}", name_of(run.fidelity),
+                     run.fidelity == first ? "" : "s");
+}
+
+/// Every condition of a triaxial series has figures of its own, with its measured curve.
+void draw_triaxial_tests(const SoilData& soil, const std::vector<Rerun>& runs,
+                         const std::filesystem::path& folder, std::vector<std::string>& missing) {
+  for (const TestCondition& condition : soil.conditions) {
+    const auto pressure = condition.number("cell_pressure_Pa");
+    if (!pressure) continue;
+    const std::string name =
+        "triaxial_" + triaxial_state_label(*pressure, condition.number("relative_density"));
+    std::vector<SimulatedTriaxial> simulated;
+    for (const Rerun& r : runs)
+      for (const Curve& c : r.result.curves)
+        if (c.name == name)
+          simulated.push_back({kind_of(r, runs.front().fidelity),
+                               r.fidelity == runs.front().fidelity ? 1 : 0, c});
+    if (simulated.empty()) continue;
+    const bool holdout = std::ranges::any_of(soil.targets, [&](const SoilTarget& t) {
+      return t.condition_id == condition.id && t.holdout;
+    });
+    for (const std::string& why :
+         draw_triaxial(soil, condition.id, holdout, simulated,
+                       folder / "figures" / ("drained_triaxial_" + condition.id)))
+      missing.push_back(why);
+  }
+}
+
 void draw_tests(const SoilData& soil, const std::vector<Rerun>& runs,
                 const std::filesystem::path& folder, std::vector<std::string>& missing) {
   for (const Rerun& first : runs) {
     if (first.fidelity != runs.front().fidelity) continue;
+    if (std::holds_alternative<DrainedTriaxialConfig>(first.test.config)) continue;
     for (const Curve& curve : first.result.curves) {
       const std::string id = test_id(first.test.config);
       const CurveStyle style = curve_style(id);
       CurveFigure figure{fmt::format("{}: {}, {} (model at the fitted values)", soil.name, id,
                                      curve.name),
                          style.x_label, style.y_label, style.x_column, style.y_column,
-                         style.x_scale, style.y_scale, {}, {}};
+                         style.x_scale, style.y_scale, true, {}, {}};
       for (const Rerun& r : runs) {
         if (id != test_id(r.test.config) || r.test.condition_id != first.test.condition_id) continue;
         for (const Curve& c : r.result.curves)
           if (c.name == curve.name)
-            figure.series.push_back({fmt::format("simulated, {} specimen{}", name_of(r.fidelity),
-                                                 r.fidelity == first.fidelity ? "" : "s"),
-                                     r.fidelity == first.fidelity ? 1 : 0, c});
+            figure.series.push_back(
+                {kind_of(r, first.fidelity), r.fidelity == first.fidelity ? 1 : 0, c});
       }
       figure.marks = stress_marks(soil, first.test, curve.name);
       const std::string name = fmt::format("{}_{}_{}.svg", id, first.test.condition_id, curve.name);
@@ -98,12 +131,12 @@ void draw_tests(const SoilData& soil, const std::vector<Rerun>& runs,
   }
 }
 
-/// "test/observable/condition" as "observable" over "test, provenance: target 1.3e6, simulated 2e6".
+/// "test/observable/condition" as "observable, condition" over "test, provenance: target 1.3e6, simulated 2e6".
 TargetRow target_row(const TargetResult& t, bool holdout) {
   const std::size_t slash = t.name.find('/');
   const std::size_t end = t.name.find('/', slash + 1);
   return {fmt::format("{}, {}\n{}: {:.3g}, simulated {:.3g}",
-                      t.name.substr(slash + 1, end - slash - 1), t.name.substr(0, slash),
+                      t.name.substr(slash + 1, end - slash - 1), t.name.substr(end + 1),
                       to_string(t.provenance), t.value, t.simulated),
           t.value, t.simulated, t.residual,
           t.sigma_total > 0 ? t.seed_sd / t.sigma_total : 0.0, holdout};
@@ -134,6 +167,7 @@ std::vector<std::string> write_curves_and_figures(const SoilData& soil, const Fi
       write_file(folder / "curves" / fmt::format("{}_{}.csv", stem, curve.name), curve_csv(curve));
   }
   draw_tests(soil, runs, folder, missing);
+  draw_triaxial_tests(soil, runs, folder, missing);
   std::vector<TargetRow> rows;
   for (const TargetResult& t : summary.targets) rows.push_back(target_row(t, false));
   for (const TargetResult& t : summary.holdouts) rows.push_back(target_row(t, true));

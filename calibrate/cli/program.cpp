@@ -8,6 +8,7 @@
 
 #include "calibrate/cli/command_check.hpp"
 #include "calibrate/cli/command_export.hpp"
+#include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_simulate.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -39,6 +40,7 @@ int run_program(int argc, const char* const* argv) {
   CheckOptions check_options;
   SimulateOptions simulate_options;
   ExportOptions export_options;
+  FeaturesOptions features_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -46,6 +48,9 @@ int run_program(int argc, const char* const* argv) {
   add_simulate_options(*simulate, simulate_options);
   CLI::App* exporting = app.add_subcommand("export", "write a fitted set for other DEM codes");
   add_export_options(*exporting, export_options);
+  CLI::App* features =
+      app.add_subcommand("features", "rows of measurements.csv from measured curves");
+  add_features_options(*features, features_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -56,6 +61,7 @@ int run_program(int argc, const char* const* argv) {
   try {
     if (check->parsed()) return run_check(check_options);
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
+    if (features->parsed()) return run_features(features_options);
     if (exporting->parsed()) return run_export(export_options);
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {

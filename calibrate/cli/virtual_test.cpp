@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
 
@@ -46,6 +48,15 @@ void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {
   c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(DrainedTriaxialConfig& c, Fidelity fidelity) {
+  // Sizes and rates of its own: a series is many tests, and their rate is the inertial number.
+  switch (fidelity) {
+    case Fidelity::preview: c.num_particles = 200, c.inertial_number = 3e-3; break;
+    case Fidelity::search: c.num_particles = 400, c.inertial_number = 2e-3; break;
+    case Fidelity::confirm: c.num_particles = 1000, c.inertial_number = 1e-3; break;
+  }
+}
+
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
                                   std::span<const SoilMaterial> m, PackingStore& p,
                                   const RunOptions& o) {
@@ -61,16 +72,35 @@ std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
   return run_confined_compression(m, c, p, o);
 }
 
+std::vector<ExperimentResult> run(const DrainedTriaxialConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_drained_triaxial(m, c, p, o);
+}
+
+std::vector<std::string> own_problems(const DrainedTriaxialConfig& c) { return problems(c); }
+std::vector<std::string> own_problems(const auto&) { return {}; }
+
+bool same_values(TestConfig a, TestConfig b) {
+  if (a.index() != b.index()) return false;
+  const std::vector<Field> left = fields(a);
+  const std::vector<Field> right = fields(b);
+  return std::ranges::equal(left, right, [](const Field& x, const Field& y) {
+    return field_text(x) == field_text(y);
+  });
+}
+
 const std::vector<TestConfig>& all_tests() {
   static const std::vector<TestConfig> tests = {
-      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{}};
+      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
+      DrainedTriaxialConfig{}};
   return tests;
 }
 
 }  // namespace
 
 const char* test_id(const TestConfig& config) {
-  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression"};
+  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
+                                 "drained_triaxial"};
   return ids[config.index()];
 }
 
@@ -94,6 +124,31 @@ std::vector<Field> fields(TestConfig& config) {
   return std::visit([](auto& c) { return fields(c); }, config);
 }
 
+std::vector<std::string> problems(TestConfig config) {
+  std::vector<std::string> found = range_problems(fields(config));
+  const std::vector<std::string> own =
+      std::visit([](const auto& c) { return own_problems(c); }, config);
+  found.insert(found.end(), own.begin(), own.end());
+  return found;
+}
+
+bool join_series(TestConfig& series, const TestConfig& other) {
+  if (same_values(series, other)) return true;
+  auto* a = std::get_if<DrainedTriaxialConfig>(&series);
+  const auto* b = std::get_if<DrainedTriaxialConfig>(&other);
+  // A series of several cell pressures has features of its own and stays whole.
+  if (!a || !b || b->cell_pressure_Pa.size() != 1 ||
+      a->relative_density.empty() != b->relative_density.empty())
+    return false;
+  DrainedTriaxialConfig with_series_of_a = *b;
+  with_series_of_a.cell_pressure_Pa = a->cell_pressure_Pa;
+  with_series_of_a.relative_density = a->relative_density;
+  if (!same_values(series, with_series_of_a)) return false;
+  a->cell_pressure_Pa.push_back(b->cell_pressure_Pa.front());
+  for (const double d : b->relative_density) a->relative_density.push_back(d);
+  return true;
+}
+
 void set_packing_seed(TestConfig& config, std::uint64_t seed) {
   std::visit([seed](auto& c) { c.packing_seed = seed; }, config);
 }
@@ -107,10 +162,15 @@ void apply_condition(TestConfig& config, const TestCondition& condition) {
 std::string feature_name(const SoilTarget& target, const TestCondition& condition) {
   const KnownObservable* known =
       soil_vocabulary().observable(target.test_id, target.observable_id);
-  const bool per_stress = known && known->need == ConditionNeed::one_normal_stress;
-  const std::vector<double> stresses = condition.values("normal_stress_Pa");
-  if (!per_stress || stresses.size() != 1) return target.observable_id;
-  return fmt::format("{}@{:.0f}", target.observable_id, stresses.front());
+  if (!known) return target.observable_id;
+  if (known->need == ConditionNeed::one_normal_stress)
+    return fmt::format("{}@{:.0f}", target.observable_id,
+                       condition.number("normal_stress_Pa").value_or(0.0));
+  if (known->need == ConditionNeed::one_cell_pressure)
+    return fmt::format("{}@{}", target.observable_id,
+                       triaxial_state_label(condition.number("cell_pressure_Pa").value_or(0.0),
+                                            condition.number("relative_density")));
+  return target.observable_id;
 }
 
 std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,

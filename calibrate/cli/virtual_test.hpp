@@ -11,12 +11,14 @@
 #include "calibrate/soil_data.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
+#include "experiments/drained_triaxial.hpp"
 #include "experiments/unconfined_compression.hpp"
 
 namespace tilth {
 
 using TestConfig =
-    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig>;
+    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
+                 DrainedTriaxialConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -25,7 +27,7 @@ enum class Fidelity {
   confirm   ///< about 1500 spheres, slow
 };
 
-/// "unconfined_compression", "direct_shear", "confined_compression".
+/// "unconfined_compression", "direct_shear", ...
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests
@@ -34,6 +36,13 @@ TestConfig virtual_test(const std::string& test_id, Fidelity fidelity);
 const char* test_id(const TestConfig& config);
 
 std::vector<Field> fields(TestConfig& config);
+
+/// Everything a test cannot be run with: ranges, and what its own numbers contradict.
+std::vector<std::string> problems(TestConfig config);
+
+/// Adds the states of `other` to a series that runs in the same packs (triaxial tests that differ in
+/// cell pressure and relative density only). False where the two are not of one series.
+bool join_series(TestConfig& series, const TestConfig& other);
 
 void set_packing_seed(TestConfig& config, std::uint64_t seed);
 

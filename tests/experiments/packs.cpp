@@ -3,6 +3,7 @@
 // Packs of lanes are a way to run members, never a part of the result.
 #include <algorithm>
 
+#include "experiments/drained_triaxial.hpp"
 #include "tests/experiments/small_tests.hpp"
 
 using namespace tilth;
@@ -17,7 +18,7 @@ struct NamedTest {
   std::function<Batch(std::span<const SoilMaterial>, const RunOptions&)> run;
 };
 
-/// The three tests, small and fast; the shear test at two of its normal stresses.
+/// Every test, small and fast; the shear test at two of its normal stresses.
 std::vector<NamedTest> small_tests() {
   return {{"unconfined compression",
            [](auto members, const RunOptions& o) {
@@ -28,6 +29,15 @@ std::vector<NamedTest> small_tests() {
              DirectShearConfig c = small_shear();
              c.normal_stress_Pa = {10e3, 40e3};
              return run_direct_shear(members, c, packings(), o);
+           }},
+          {"drained triaxial",
+           [](auto members, const RunOptions& o) {
+             DrainedTriaxialConfig c{.num_particles = 100,
+                                     .cell_pressure_Pa = {20e3, 40e3},
+                                     .relative_density = {0.2, 0.8},
+                                     .inertial_number = 2e-2,
+                                     .max_axial_strain = 0.05};
+             return run_drained_triaxial(members, c, packings(), o);
            }},
           {"confined compression", [](auto members, const RunOptions& o) {
              return run_confined_compression(members, small_confined(), packings(), o);

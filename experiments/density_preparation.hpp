@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// Unbonded specimens of a given relative density, on the loosest and densest states of the spheres.
+#pragma once
+
+#include "experiments/batch.hpp"
+#include "experiments/isotropic_compression.hpp"
+
+namespace tilth {
+
+/// The states a cloud of spheres can itself be prepared in at one isotropic stress.
+///
+///   loosest: pressed together from a cloud with the friction the grains have;
+///   densest: then the friction is taken away under that stress.
+/// I_D = (e_max - e) / (e_max - e_min).
+struct OwnStates {
+  double loosest_void_ratio = 0.0;
+  double densest_void_ratio = 0.0;
+
+  double relative_density(double void_ratio) const {
+    return (loosest_void_ratio - void_ratio) / (loosest_void_ratio - densest_void_ratio);
+  }
+  double void_ratio(double relative_density) const {
+    return loosest_void_ratio - relative_density * (loosest_void_ratio - densest_void_ratio);
+  }
+};
+
+/// Prepares one lane: press with its friction (the loosest state is measured on this very specimen),
+/// lower the friction by 12 % per inertial time (isotropic_compression.hpp) until the void ratio is that of the relative density, give
+/// the friction back, settle. Local damping is 0.2 meanwhile. A specimen that gets no denser without
+/// friction has found its own densest state, which then takes the place of the cloud's. A relative
+/// density off by more than 0.15 fails the lane.
+/// @source own choice; friction as the handle on density is common in DEM work
+class DensityPreparation {
+ public:
+  /// @param relative_density in [0, 1]; 1 takes the friction away and settles
+  DensityPreparation(double relative_density, double densest_void_ratio, double stress_Pa,
+                     const SoilMaterial& material);
+
+  void start(LaneRun& run, int lane);
+  /// Once per interval; true when the specimen is ready, with its own friction.
+  bool advance(LaneRun& run, int lane);
+  const OwnStates& states() const { return states_; }
+
+ private:
+  enum class Stage { press, densify, settle };
+  bool densify(LaneRun& run, int lane);
+
+  double relative_density_;
+  double own_friction_;
+  double own_damping_;
+  double friction_;
+  OwnStates states_;
+  IsotropicCompression press_;
+  Stage stage_ = Stage::press;
+};
+
+/// Void ratio of the densest state of a cloud against stress over contact modulus: straight lines
+/// between the states measured.
+struct DensestStates {
+  RunStatus status = RunStatus::stopped;  ///< anything but completed: there are no states
+  std::string message;
+  std::vector<double> stress_over_modulus;
+  std::vector<double> void_ratio;
+
+  double void_ratio_at(double ratio) const;
+};
+
+/// The densest states of a cloud by the procedure above, with friction 0.5.
+DensestStates measure_densest_states(const Packing& cloud, const Vec3& cloud_size_m,
+                                     const RunOptions& options);
+
+}  // namespace tilth
