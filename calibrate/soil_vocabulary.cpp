@@ -31,6 +31,18 @@ SoilVocabulary built_in() {
       {"confined_compression", "reload_modulus_Pa", 1e5, 1e9, unload_stresses},
       {"confined_compression", "radial_stress_ratio", 0.05, 2.0, load_stresses},
       {"confined_compression", "compression_strain", 1e-4, 0.6, load_stresses},
+      {"confined_compression", "second_unload_modulus_Pa", 1e5, 1e9, unload_stresses,
+       {"second_load_to_stress_Pa"}},
+      {"confined_compression", "second_reload_modulus_Pa", 1e5, 1e9, unload_stresses,
+       {"second_load_to_stress_Pa"}},
+      {"unconfined_compression", "fast_peak_ratio", 0.2, 10.0, none, {"fast_rate_ratio"}},
+      {"direct_tension", "tensile_strength_Pa", 20.0, 5e5, none},
+      {"direct_tension", "tensile_modulus_Pa", 1e4, 3e8, none},
+      {"direct_tension", "strain_at_peak", 1e-5, 0.2, none},
+      {"interface_shear", "interface_friction_angle_rad", 0.05, 0.9, three_normal_stresses},
+      {"interface_shear", "adhesion_Pa", 1.0, 1e5, three_normal_stresses},
+      {"interface_shear", "peak_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
+      {"interface_shear", "residual_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
   };
   words.parameters = {
       {"bond_modulus_Pa", 1.0, 1e12},
@@ -58,6 +70,9 @@ SoilVocabulary built_in() {
       {"load_from_stress_Pa", 0.0, 1e7},
       {"load_to_stress_Pa", 100.0, 1e7},
       {"unload_to_stress_Pa", 0.0, 1e7},
+      {"second_load_to_stress_Pa", 100.0, 1e7},
+      {"fast_rate_ratio", 1.0, 1000.0},
+      {"cut_angle_rad", -3.2, 3.2},
   };
   return words;
 }

@@ -9,15 +9,22 @@
 
 namespace tilth {
 
-/// Packing of the box `spec` whose grains lie as if the box had been cut from a larger block after
-/// turning the block by angle_rad about the y axis. Angle 0 is the packing of `spec` itself.
+/// Grains of a block after the block has been turned by angle_rad about the y axis (right hand: z
+/// towards x) and laid with its middle on that of the box: the deepest ones behind the box's faces in
+/// x and z, until their volume reaches solid_m3 or none are left. Not relaxed, in the order of depth.
+Packing cut_from(const Packing& block, const Vec3& block_size_m, const Vec3& box_size_m,
+                 double solid_m3, double angle_rad);
+
+/// Packing of the box `spec` whose grains lie as if they had been cut from a larger block turned by
+/// angle_rad about y. Angle 0 is the packing of `spec` itself.
 ///
-/// The block is made at the same grain size and porosity, long enough for the turned box and a margin
-/// of two mean radii on every side in x and z, so that no wall layer of the block is in the specimen;
-/// along y it is as long as the box. A grain is kept where its centre lies inside the box: cut faces
-/// are true sections, through which grains stick out by less than their radius. The number of grains
-/// is that of `spec` on average only.
+/// The block has the grain size and porosity of `spec`; it is wide enough for the box at any angle and
+/// a margin of two mean radii in x and z, so that no wall layer of the block gets into the specimen,
+/// and as long as the box along y. The box gets the deepest grains up to its own porosity, then its
+/// walls push in what sticks out (relaxed_packing): the outermost one or two layers lie anew, the
+/// grains behind them as in the block. The number of grains is that of `spec` on average only.
 /// @pre spec.shape is a box
+/// @cost the block has about 2.5 times the grains of the box
 std::shared_ptr<const Packing> cut_block(PackingStore& packings, const PackingSpec& spec,
                                          double angle_rad);
 

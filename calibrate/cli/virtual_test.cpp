@@ -46,6 +46,17 @@ void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {
   c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(DirectTensionConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  // As brittle as unconfined compression.
+  c.pull_speed_over_wave_speed = 0.25 * size_of(fidelity).speed_over_wave_speed;
+}
+
+void apply_fidelity(InterfaceShearConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  c.slide_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+}
+
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
                                   std::span<const SoilMaterial> m, PackingStore& p,
                                   const RunOptions& o) {
@@ -61,16 +72,27 @@ std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
   return run_confined_compression(m, c, p, o);
 }
 
+std::vector<ExperimentResult> run(const DirectTensionConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_direct_tension(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const InterfaceShearConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_interface_shear(m, c, p, o);
+}
+
 const std::vector<TestConfig>& all_tests() {
   static const std::vector<TestConfig> tests = {
-      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{}};
+      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
+      DirectTensionConfig{}, InterfaceShearConfig{}};
   return tests;
 }
 
 }  // namespace
 
 const char* test_id(const TestConfig& config) {
-  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression"};
+  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
+                                 "direct_tension", "interface_shear"};
   return ids[config.index()];
 }
 

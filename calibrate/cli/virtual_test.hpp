@@ -11,12 +11,15 @@
 #include "calibrate/soil_data.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
+#include "experiments/direct_tension.hpp"
+#include "experiments/interface_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
 
 namespace tilth {
 
 using TestConfig =
-    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig>;
+    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
+                 DirectTensionConfig, InterfaceShearConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -25,7 +28,7 @@ enum class Fidelity {
   confirm   ///< about 1500 spheres, slow
 };
 
-/// "unconfined_compression", "direct_shear", "confined_compression".
+/// "unconfined_compression", "direct_shear", "confined_compression", ...
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests

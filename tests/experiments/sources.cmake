@@ -2,8 +2,11 @@
 list(APPEND TILTH_TEST_SOURCES
   experiments/confined_compression.cpp
   experiments/curve_features.cpp
+  experiments/cut_block.cpp
   experiments/direct_shear.cpp
+  experiments/direct_tension.cpp
   experiments/failed_runs.cpp
   experiments/field.cpp
+  experiments/interface_shear.cpp
   experiments/packs.cpp
   experiments/unconfined_compression.cpp)
