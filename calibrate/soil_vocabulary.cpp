@@ -40,6 +40,18 @@ SoilVocabulary built_in() {
       {"drained_triaxial", "friction_angle_rad", 0.05, 1.1, two_cell_pressures},
       {"drained_triaxial", "cohesion_Pa", 50.0, 2e5, two_cell_pressures},
       {"drained_triaxial", "stiffness_exponent", -0.2, 1.5, two_cell_pressures},
+      {"confined_compression", "second_unload_modulus_Pa", 1e5, 1e9, unload_stresses,
+       {"second_load_to_stress_Pa"}},
+      {"confined_compression", "second_reload_modulus_Pa", 1e5, 1e9, unload_stresses,
+       {"second_load_to_stress_Pa"}},
+      {"unconfined_compression", "fast_peak_ratio", 0.2, 10.0, none, {"fast_rate_ratio"}},
+      {"direct_tension", "tensile_strength_Pa", 20.0, 5e5, none},
+      {"direct_tension", "tensile_modulus_Pa", 1e4, 3e8, none},
+      {"direct_tension", "strain_at_peak", 1e-5, 0.2, none},
+      {"interface_shear", "interface_friction_angle_rad", 0.05, 0.9, three_normal_stresses},
+      {"interface_shear", "adhesion_Pa", 1.0, 1e5, three_normal_stresses},
+      {"interface_shear", "peak_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
+      {"interface_shear", "residual_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
   };
   words.parameters = {
       {"bond_modulus_Pa", 0.0, 1e12},
@@ -69,6 +81,9 @@ SoilVocabulary built_in() {
       {"load_from_stress_Pa", 0.0, 1e7},
       {"load_to_stress_Pa", 100.0, 1e7},
       {"unload_to_stress_Pa", 0.0, 1e7},
+      {"second_load_to_stress_Pa", 100.0, 1e7},
+      {"fast_rate_ratio", 1.0, 1000.0},
+      {"cut_angle_rad", -3.2, 3.2},
   };
   // Upper bounds of stress let no usual test survive a factor of 1000; the lower ones catch kPa.
   words.curves = {{"drained_triaxial",

@@ -35,7 +35,7 @@ struct ContactForce {
 /// Linear spring-dashpot with Coulomb slip and history; see contact_law.hpp.
 /// `touching` lanes only; the others get zero force and an emptied spring.
 template <int W>
-TILTH_INLINE ContactForce<W> contact_force(const Law<W>& law, LawRow friction_row, Mask<W> touching,
+TILTH_INLINE ContactForce<W> contact_force(const Law<W>& law, Pack<W> friction, Mask<W> touching,
                                            Pack<W> overlap, Pack<W> normal_stiffness,
                                            Pack<W> damping_factor, const Encounter<W>& e,
                                            double* spring_m) {
@@ -49,7 +49,7 @@ TILTH_INLINE ContactForce<W> contact_force(const Law<W>& law, LawRow friction_ro
   const P shear_stiffness = normal_stiffness * law[law_shear_ratio];
   const Pack3<W> dashpot = (damping_factor * law[law_tangential_damping]) * e.sliding_velocity;
   Pack3<W> tangential = shear_stiffness * spring + dashpot;
-  const P limit = law[friction_row] * select(normal > zero, normal, zero);
+  const P limit = friction * select(normal > zero, normal, zero);
   const P squared = dot(tangential, tangential);
   const Mask<W> slipping = (squared > limit * limit) & touching;
   if (any(slipping)) {
@@ -60,6 +60,21 @@ TILTH_INLINE ContactForce<W> contact_force(const Law<W>& law, LawRow friction_ro
   }
   select(touching, spring, Pack3<W>::zero()).store(spring_m);
   return {select(touching, normal, zero), select(touching, tangential, Pack3<W>::zero())};
+}
+
+/// The same springs and dashpots glued together: they pull as well as push and never slip.
+template <int W>
+TILTH_INLINE ContactForce<W> glue_force(const Law<W>& law, Pack<W> overlap,
+                                        Pack<W> normal_stiffness, Pack<W> damping_factor,
+                                        const Encounter<W>& e, double* spring_m) {
+  const Pack<W> normal = normal_stiffness * overlap +
+                         damping_factor * law[law_normal_damping] * e.closing_speed;
+  Pack3<W> spring = Pack3<W>::load(spring_m) + law[law_dt] * e.sliding_velocity;
+  spring = spring - dot(spring, e.normal) * e.normal;
+  spring.store(spring_m);
+  const Pack<W> shear_stiffness = normal_stiffness * law[law_shear_ratio];
+  return {normal, shear_stiffness * spring +
+                      (damping_factor * law[law_tangential_damping]) * e.sliding_velocity};
 }
 
 }  // namespace tilth::lanes

@@ -75,7 +75,7 @@ Energy energy(const Model& model, const State& state, const Workspace& workspace
       const WallRecord& record = workspace.wall_pairs[c];
       const double overlap_m =
           record.reference_m - wall_distance_m(model, state, w, x, lane_id);
-      if (overlap_m > 0)
+      if (overlap_m > 0 || record.glued)
         e.walls_J += spring_energy_J(law, record.stiffness_factor, overlap_m,
                                      stored_vector(state.wall_contacts.spring_m, c * 3, lanes, lane));
     }

@@ -71,7 +71,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   if (any(touching)) {
     const P stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor);
     const ContactForce<W> f =
-        contact_force(law, law_friction, touching, reference - e.distance, stiffness,
+        contact_force(law, law[law_friction], touching, reference - e.distance, stiffness,
                       P::all(pair.damping_factor), e, spring_m);
     push = f.normal;
     tangential = f.tangential;

@@ -60,6 +60,9 @@ std::vector<std::string> problems(const Model& model) {
   for (std::size_t w = 0; w < model.walls.size(); ++w)
     if (!(std::abs(model.walls[w].direction.norm() - 1) < 1e-9))
       found.push_back(fmt::format("wall {}: direction must be a unit vector", w));
+  for (std::size_t w = 0; w < model.walls.size(); ++w)
+    if (const double scale = model.walls[w].friction_scale; !(std::isfinite(scale) && scale >= 0))
+      found.push_back(fmt::format("wall {}: friction_scale = {}: must be finite and >= 0", w, scale));
   const auto before = [](const auto& a, const auto& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   };

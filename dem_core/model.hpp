@@ -32,7 +32,7 @@ struct LaneLaw {
   double contact_stiffness = 0.0;      ///< E_c [Pa] or k_n [N/m], see StiffnessKind; >= 0
   double shear_stiffness_ratio = 0.5;  ///< k_s / k_n, > 0
   double friction = 0.5;               ///< Coulomb coefficient between grains, >= 0
-  double wall_friction = 0.0;          ///< Coulomb coefficient on walls, >= 0
+  double wall_friction = 0.0;          ///< Coulomb coefficient on walls, >= 0; see friction_scale
   double normal_damping = 0.0;         ///< see DampingKind, >= 0
   double tangential_damping = 0.0;     ///< see DampingKind (with m_eff k_n), >= 0
   double local_damping = 0.0;          ///< alpha in F - alpha |F| sign(v), in [0, 1)
@@ -56,6 +56,7 @@ struct Wall {
   double half_a_m = std::numeric_limits<double>::infinity();
   double half_b_m = std::numeric_limits<double>::infinity();
   bool has_edges = true;
+  double friction_scale = 1.0;  ///< times wall_friction of the lane: 0 greases this wall alone, >= 0
 
   bool bounded() const {
     return half_a_m < std::numeric_limits<double>::infinity() ||
@@ -75,6 +76,9 @@ struct WallReference {
   std::int32_t wall = 0;
   std::int32_t particle = 0;
   double distance_m = 0.0;
+  /// Glued for good: the contact's springs and dashpots act at any distance, in tension too, and the
+  /// tangential one never slips.
+  bool glued = false;
 };
 
 struct Model {

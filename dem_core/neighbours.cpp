@@ -197,25 +197,31 @@ void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
   state.contacts = std::move(fresh);
 }
 
+/// Per grain its reference at this wall, or nullptr where contact begins at the radius.
+std::vector<const WallReference*> references_of_wall(const Model& model, int wall) {
+  std::vector<const WallReference*> of_particle(model.radius_m.size(), nullptr);
+  for (const WallReference& r : model.wall_references)
+    if (r.wall == wall) of_particle[as_size(r.particle)] = &r;
+  return of_particle;
+}
+
 bool near_wall(const Model& model, const State& state, const Workspace& workspace, int wall,
                int particle) {
   const double reach = model.radius_m[as_size(particle)] + workspace.skin_m;
   for (int lane = 0; lane < state.num_lanes; ++lane)
     if (state.active[as_size(lane)] &&
-        wall_distance_m(model, state, wall, state.position_m(particle, lane), lane) < reach)
+        distance_to_reach_wall_m(model, state, wall, state.position_m(particle, lane), lane) < reach)
       return true;
   return false;
 }
 
-WallRecord wall_record(const Model& model, int wall, int particle) {
+WallRecord wall_record(const Model& model, int particle, const WallReference* reference) {
   const double r = model.radius_m[as_size(particle)];
   const double mass = model.mass_kg[as_size(particle)];
   const double stiffness = model.stiffness_kind == StiffnessKind::modulus ? M_PI * r : 1.0;
-  double reference_m = r;
-  for (const WallReference& w : model.wall_references)
-    if (w.wall == wall && w.particle == particle) reference_m = w.distance_m;
   const bool rate = model.damping_kind == DampingKind::rate;
-  return {reference_m, stiffness, rate ? mass : std::sqrt(mass * stiffness)};
+  return {reference ? reference->distance_m : r, stiffness,
+          rate ? mass : std::sqrt(mass * stiffness), reference && reference->glued};
 }
 
 void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
@@ -227,14 +233,17 @@ void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
   for (int wall = 0; wall < static_cast<int>(model.walls.size()); ++wall) {
     std::size_t k = as_size(old.row_begin[as_size(wall)]);
     const std::size_t k_end = as_size(old.row_begin[as_size(wall) + 1]);
+    const std::vector<const WallReference*> references = references_of_wall(model, wall);
     for (int i = 0; i < model.num_particles(); ++i) {
-      if (!near_wall(model, state, workspace, wall, i)) continue;
+      const WallReference* reference = references[as_size(i)];
+      const bool glued = reference && reference->glued;
+      if (!glued && !near_wall(model, state, workspace, wall, i)) continue;
       fresh.particle.push_back(i);
       fresh.spring_m.resize(fresh.particle.size() * 3 * lanes, 0.0);
       while (k < k_end && old.particle[k] < i) ++k;
       if (k < k_end && old.particle[k] == i)
         copy_spring(old.spring_m, k, fresh.spring_m, fresh.particle.size() - 1, lanes);
-      workspace.wall_pairs.push_back(wall_record(model, wall, i));
+      workspace.wall_pairs.push_back(wall_record(model, i, reference));
     }
     fresh.row_begin[as_size(wall) + 1] = static_cast<Index>(fresh.particle.size());
   }

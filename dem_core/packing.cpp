@@ -108,6 +108,32 @@ void run(Model& model, State& state, Workspace& workspace, int num_steps) {
   for (int n = 0; n < num_steps; ++n) step(model, state, workspace);
 }
 
+/// Relaxes until the overlaps are gone or stop falling; the grains in spatial order.
+Packing relaxed(Model& model, State& state, Workspace& workspace, double mean_radius_m) {
+  Overlaps before = overlaps(model, state);
+  for (int k = 0; k < 60 && before.largest > 1e-3; ++k) {
+    run(model, state, workspace, 200);
+    const Overlaps after = overlaps(model, state);
+    const bool stalled = after.sum > 0.995 * before.sum && k > 10;
+    before = after;
+    if (stalled) break;
+  }
+  Packing packing;
+  packing.mean_radius_m = mean_radius_m;
+  packing.largest_overlap = before.largest;
+  std::vector<Vec3> position_m;
+  for (int i = 0; i < model.num_particles(); ++i) position_m.push_back(state.position_m(i));
+  for (const int i : spatial_order(position_m, 2.5 * mean_radius_m)) {
+    packing.radius_m.push_back(model.radius_m[as_size(i)]);
+    packing.position_m.push_back(position_m[as_size(i)]);
+  }
+  return packing;
+}
+
+double mean_of(const std::vector<double>& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
 }  // namespace
 
 double uniform01(std::mt19937_64& rng) { return static_cast<double>(rng() >> 11) * 0x1p-53; }
@@ -148,8 +174,7 @@ Packing make_packing(const PackingSpec& spec) {
   // 1. radii with the exact total volume, centres at random
   std::mt19937_64 rng(spec.seed);
   const std::vector<double> radius_m = draw_radii(spec, rng);
-  const double mean_radius_m =
-      std::accumulate(radius_m.begin(), radius_m.end(), 0.0) / static_cast<double>(radius_m.size());
+  const double mean_radius_m = mean_of(radius_m);
   constexpr double start_scale = 0.45;
   std::vector<Vec3> position_m(radius_m.size());
   for (std::size_t i = 0; i < radius_m.size(); ++i)
@@ -167,27 +192,17 @@ Packing make_packing(const PackingSpec& spec) {
     run(model, state, workspace, 20);
   }
 
-  // 3. relax until the overlaps are gone or stop falling
-  Overlaps before = overlaps(model, state);
-  for (int k = 0; k < 60 && before.largest > 1e-3; ++k) {
-    run(model, state, workspace, 200);
-    const Overlaps after = overlaps(model, state);
-    const bool stalled = after.sum > 0.995 * before.sum && k > 10;
-    before = after;
-    if (stalled) break;
-  }
+  // 3. relax, 4. store in spatial order
+  return relaxed(model, state, workspace, mean_radius_m);
+}
 
-  // 4. store in spatial order
-  Packing packing;
-  packing.mean_radius_m = mean_radius_m;
-  packing.largest_overlap = before.largest;
-  for (std::size_t i = 0; i < position_m.size(); ++i)
-    position_m[i] = state.position_m(static_cast<int>(i));
-  for (const int i : spatial_order(position_m, 2.5 * mean_radius_m)) {
-    packing.radius_m.push_back(radius_m[as_size(i)]);
-    packing.position_m.push_back(position_m[as_size(i)]);
-  }
-  return packing;
+Packing relaxed_packing(const PackingSpec& spec, const std::vector<double>& radius_m,
+                        const std::vector<Vec3>& position_m) {
+  const double mean_radius_m = mean_of(radius_m);
+  Model model = relaxation_model(spec, radius_m, mean_radius_m);
+  State state = initial_state(model, position_m);
+  Workspace workspace;
+  return relaxed(model, state, workspace, mean_radius_m);
 }
 
 }  // namespace tilth

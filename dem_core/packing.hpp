@@ -42,6 +42,11 @@ double container_volume_m3(const PackingSpec& spec);
 /// @cost about 4000 steps
 Packing make_packing(const PackingSpec& spec);
 
+/// The same last stage for grains that are already there: relaxed in the container of `spec`, whose
+/// walls push in what sticks out, and put in spatial order. Only shape and size of `spec` count.
+Packing relaxed_packing(const PackingSpec& spec, const std::vector<double>& radius_m,
+                        const std::vector<Vec3>& position_m);
+
 /// Uniform in [0, 1) with 53 bits; the same everywhere, unlike the library's distributions.
 double uniform01(std::mt19937_64& rng);
 

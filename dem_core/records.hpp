@@ -21,6 +21,7 @@ struct WallRecord {
   double reference_m = 0.0;
   double stiffness_factor = 0.0;
   double damping_factor = 0.0;
+  bool glued = false;  ///< see WallReference
 };
 
 }  // namespace tilth

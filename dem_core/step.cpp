@@ -166,6 +166,7 @@ std::vector<lanes::WallView> wall_views(const Model& model) {
     }
     v.half_a_m = wall.half_a_m;
     v.half_b_m = wall.half_b_m;
+    v.friction_scale = wall.friction_scale;
     views.push_back(v);
   }
   return views;

@@ -84,12 +84,19 @@ void add_walls(const Model& model, const State& state, std::vector<Load>& sum, i
   const double factor = model.stiffness_kind == StiffnessKind::modulus ? std::numbers::pi * r : 1.0;
   const ContactMatrices k =
       contact_matrices(model, model.lanes[as_size(lane)], factor, model.mass_kg[as_size(i)]);
-  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
-    const double distance = wall_distance_m(model, state, w, x, lane);
-    if (distance > 1.02 * r) continue;
+  const auto add = [&](int w, double distance) {
     const Vec3 n = wall_normal(model, state, w, x, lane);
     sum[as_size(i)][0] += one_sided(k.springs, n, distance);
     sum[as_size(i)][1] += one_sided(k.dashpots, n, distance);
+  };
+  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
+    const double distance = wall_distance_m(model, state, w, x, lane);
+    if (distance <= 1.02 * r) add(w, distance);
+  }
+  for (const WallReference& reference : model.wall_references) {
+    if (!reference.glued || reference.particle != i) continue;
+    const double distance = wall_distance_m(model, state, reference.wall, x, lane);
+    if (distance > 1.02 * r) add(reference.wall, distance);
   }
 }
 

@@ -50,6 +50,7 @@ struct WallView {
   double tangent_b[3];
   double half_a_m;
   double half_b_m;
+  double friction_scale;
 };
 
 struct StepView {

@@ -14,8 +14,8 @@ double beyond(double x, double half) { return x - std::clamp(x, -half, half); }
 
 }  // namespace
 
-double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
-                       int lane) {
+double distance_to_reach_wall_m(const Model& model, const State& state, int wall,
+                                const Vec3& point_m, int lane) {
   const Wall& w = model.walls[static_cast<std::size_t>(wall)];
   const Vec3 offset = point_m - state.wall_position_m(wall, lane);
   const double along = offset.dot(w.direction);
@@ -30,8 +30,19 @@ double wall_distance_m(const Model& model, const State& state, int wall, const V
   const double da = beyond(offset.dot(w.tangent_a), w.half_a_m);
   const double db = beyond(offset.dot(w.tangent_b), w.half_b_m);
   if (da == 0 && db == 0) return along;
-  if (!w.has_edges) return std::numeric_limits<double>::infinity();
   return std::sqrt(along * along + da * da + db * db);
+}
+
+double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
+                       int lane) {
+  const Wall& w = model.walls[static_cast<std::size_t>(wall)];
+  if (!w.has_edges && w.bounded()) {
+    const Vec3 offset = point_m - state.wall_position_m(wall, lane);
+    if (beyond(offset.dot(w.tangent_a), w.half_a_m) != 0 ||
+        beyond(offset.dot(w.tangent_b), w.half_b_m) != 0)
+      return std::numeric_limits<double>::infinity();
+  }
+  return distance_to_reach_wall_m(model, state, wall, point_m, lane);
 }
 
 Vec3 wall_normal(const Model& model, const State& state, int wall, const Vec3& point_m, int lane) {

@@ -13,6 +13,11 @@ namespace tilth {
 double wall_distance_m(const Model& model, const State& state, int wall, const Vec3& point_m,
                        int lane = 0);
 
+/// The same, but beside a rectangle without edges the distance to its nearest point: how far the grain
+/// has to go to meet the wall.
+double distance_to_reach_wall_m(const Model& model, const State& state, int wall,
+                                const Vec3& point_m, int lane = 0);
+
 /// Unit vector along which the wall pushes a grain at the point: towards the axis of a cylinder, away
 /// from the nearest point of a rectangle.
 Vec3 wall_normal(const Model& model, const State& state, int wall, const Vec3& point_m,

@@ -72,7 +72,7 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const WallMeeting<W> meeting = meet_wall<W>(view.wall_views[wall], place, position);
   const P reference = P::all(record.reference_m);
   const Mask<W> touching = meeting.distance < reference;
-  if (!any(touching)) {
+  if (!record.glued && !any(touching)) {
     Pack3<W>::zero().store(spring_m);
     return;
   }
@@ -88,10 +88,14 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const Pack3<W> spin = Pack3<W>::load(motion + 6 * W);
   e.sliding_velocity =
       relative - opening_speed * e.normal - cross(meeting.distance * spin, e.normal);
+  const P overlap = reference - meeting.distance;
+  const P stiffness = law[law_contact_stiffness] * P::all(record.stiffness_factor);
+  const P damping_factor = P::all(record.damping_factor);
+  const P friction = law[law_wall_friction] * P::all(view.wall_views[wall].friction_scale);
   const ContactForce<W> f =
-      contact_force(law, law_wall_friction, touching, reference - meeting.distance,
-                    law[law_contact_stiffness] * P::all(record.stiffness_factor),
-                    P::all(record.damping_factor), e, spring_m);
+      record.glued
+          ? glue_force(law, overlap, stiffness, damping_factor, e, spring_m)
+          : contact_force(law, friction, touching, overlap, stiffness, damping_factor, e, spring_m);
   const Pack3<W> on_grain = f.normal * e.normal - f.tangential;
   double* force = view.force + i * 6 * W;
   (Pack3<W>::load(force) + on_grain).store(force);

@@ -57,18 +57,62 @@ std::vector<ExperimentResult> run_in_packs(std::span<const double> density_of_ta
   return results;
 }
 
-std::vector<double> densities_kg_per_m3(std::span<const SoilMaterial> members) {
-  std::vector<double> density(members.size());
-  std::ranges::transform(members, density.begin(),
-                         [](const SoilMaterial& m) { return m.density_kg_per_m3; });
-  return density;
+std::vector<ExperimentResult> run_members(std::span<const SoilMaterial> members,
+                                          const RunOptions& options, const MemberRunner& run) {
+  const double only[] = {0.0};
+  return run_settings(
+      members, only, options,
+      [&run](std::span<const SoilMaterial> lanes, std::span<const double>) { return run(lanes); },
+      [](std::span<ExperimentResult> runs) { return std::move(runs.front()); });
 }
 
-std::vector<SoilMaterial> pick(std::span<const SoilMaterial> members,
-                               std::span<const std::size_t> task_of_lane) {
-  std::vector<SoilMaterial> lanes;
-  for (const std::size_t task : task_of_lane) lanes.push_back(members[task]);
-  return lanes;
+std::vector<ExperimentResult> run_settings(std::span<const SoilMaterial> members,
+                                           std::span<const double> settings,
+                                           const RunOptions& options, const SettingRunner& run,
+                                           const SettingJoin& join) {
+  std::vector<SoilMaterial> material_of_task;
+  std::vector<double> setting_of_task, density_of_task;
+  for (const double setting : settings)
+    for (const SoilMaterial& m : members) {
+      material_of_task.push_back(m);
+      setting_of_task.push_back(setting);
+      density_of_task.push_back(m.density_kg_per_m3);
+    }
+  std::vector<ExperimentResult> runs =
+      run_in_packs(density_of_task, options, [&](std::span<const std::size_t> task_of_lane) {
+        std::vector<SoilMaterial> lanes;
+        std::vector<double> setting_of_lane;
+        for (const std::size_t task : task_of_lane) {
+          lanes.push_back(material_of_task[task]);
+          setting_of_lane.push_back(setting_of_task[task]);
+        }
+        return run(lanes, setting_of_lane);
+      });
+  std::vector<ExperimentResult> results;
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    std::vector<ExperimentResult> own;
+    for (std::size_t k = 0; k < settings.size(); ++k)
+      own.push_back(std::move(runs[k * members.size() + m]));
+    results.push_back(join(own));
+  }
+  return results;
+}
+
+ExperimentResult joined_status(std::span<const ExperimentResult> runs,
+                               const std::function<std::string(std::size_t run)>& label,
+                               const std::string& completed_message) {
+  ExperimentResult joined;
+  joined.status = RunStatus::completed;
+  joined.message = completed_message;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    joined.dt_s = runs[k].dt_s;
+    joined.num_steps += runs[k].num_steps;
+    joined.inertial_number = std::max(joined.inertial_number, runs[k].inertial_number);
+    if (runs[k].status == RunStatus::completed || joined.status != RunStatus::completed) continue;
+    joined.status = runs[k].status;
+    joined.message = label(k) + runs[k].message;
+  }
+  return joined;
 }
 
 }  // namespace tilth

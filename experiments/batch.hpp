@@ -37,11 +37,31 @@ using PackRunner =
 std::vector<ExperimentResult> run_in_packs(std::span<const double> density_of_task,
                                            const RunOptions& options, const PackRunner& run);
 
-/// Density of every member.
-std::vector<double> densities_kg_per_m3(std::span<const SoilMaterial> members);
+/// Runs one pack of members; the result has one entry per lane.
+using MemberRunner = std::function<std::vector<ExperimentResult>(std::span<const SoilMaterial>)>;
 
-/// members[task] for every lane.
-std::vector<SoilMaterial> pick(std::span<const SoilMaterial> members,
-                               std::span<const std::size_t> task_of_lane);
+/// One result per member, in their order.
+std::vector<ExperimentResult> run_members(std::span<const SoilMaterial> members,
+                                          const RunOptions& options, const MemberRunner& run);
+
+/// Runs one pack whose lanes are members at settings (a normal stress, a speed ratio, ...).
+using SettingRunner = std::function<std::vector<ExperimentResult>(
+    std::span<const SoilMaterial> lanes, std::span<const double> setting_of_lane)>;
+
+/// Makes one result of a member's runs, one per setting in their order.
+using SettingJoin = std::function<ExperimentResult(std::span<ExperimentResult> runs)>;
+
+/// Runs every member at every setting and joins the runs of each. Runs of one setting stand together
+/// in the packs, since they take alike.
+std::vector<ExperimentResult> run_settings(std::span<const SoilMaterial> members,
+                                           std::span<const double> settings,
+                                           const RunOptions& options, const SettingRunner& run,
+                                           const SettingJoin& join);
+
+/// What the runs of one member have in common: the first failure with its label before the message,
+/// or `completed` with the given message; all steps, the largest inertial number, no features.
+ExperimentResult joined_status(std::span<const ExperimentResult> runs,
+                               const std::function<std::string(std::size_t run)>& label,
+                               const std::string& completed_message);
 
 }  // namespace tilth

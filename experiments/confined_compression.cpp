@@ -4,35 +4,46 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "experiments/curve_features.hpp"
-#include "experiments/lane_run.hpp"
+#include "experiments/platens.hpp"
 
 namespace tilth {
 namespace {
 
-enum WallId : int { bottom, top, ring };
+enum WallId : int { bottom = bottom_platen, top = top_platen, ring };
 enum Column : std::size_t { axial_strain, axial_stress, radial_stress, broken };
-enum class Stage { load, unload, reload };
 
 std::vector<Wall> walls(const ConfinedCompressionConfig& c) {
-  return {{.direction = Vec3::UnitZ()},
-          {.direction = -Vec3::UnitZ(), .position_m = c.ring_height_m * Vec3::UnitZ()},
-          {.shape = WallShape::cylinder, .radius_m = c.ring_radius_m}};
+  std::vector<Wall> all = platens(c.ring_height_m);
+  for (Wall& platen : all) platen.friction_scale = c.platen_friction_scale;
+  all.push_back({.shape = WallShape::cylinder, .radius_m = c.ring_radius_m});
+  return all;
 }
 
-struct LaneProgress {
-  Stage stage = Stage::load;
-  std::size_t load_end = 0;    ///< first row at or above load_to
-  std::size_t unload_end = 0;  ///< first row at or below unload_to after it
-};
+/// Stresses at which the platens turn, loading and unloading by turns; the test ends at the last.
+std::vector<double> turning_stresses_Pa(const ConfinedCompressionConfig& c) {
+  std::vector<double> turns = {c.load_to_stress_Pa, c.unload_to_stress_Pa};
+  if (c.second_load_to_stress_Pa > c.load_to_stress_Pa) {
+    turns.push_back(c.second_load_to_stress_Pa);
+    turns.push_back(c.unload_to_stress_Pa);
+    turns.push_back(c.second_load_to_stress_Pa);
+  } else {
+    turns.push_back(c.load_to_stress_Pa);
+  }
+  return turns;
+}
 
 class OedometerProtocol {
  public:
   OedometerProtocol(const ConfinedCompressionConfig& config, std::vector<double> speed_m_per_s)
-      : config_(config), speed_m_per_s_(std::move(speed_m_per_s)), progress_(speed_m_per_s_.size()) {}
+      : config_(config),
+        turns_Pa_(turning_stresses_Pa(config)),
+        speed_m_per_s_(std::move(speed_m_per_s)),
+        turn_rows_(speed_m_per_s_.size()) {}
 
   static constexpr int interval_steps = 20;
 
@@ -47,45 +58,48 @@ class OedometerProtocol {
     Curve& curve = run.results[k].curves.front();
     record(run, lane, curve);
     const std::vector<double>& row = curve.rows.back();
-    LaneProgress& p = progress_[k];
-    const double stress_Pa = row[axial_stress];
-    if (p.stage == Stage::load && stress_Pa >= config_.load_to_stress_Pa) {
-      p.stage = Stage::unload;
-      p.load_end = curve.rows.size() - 1;
-      drive(run, lane, -1);
-    } else if (p.stage == Stage::unload && stress_Pa <= config_.unload_to_stress_Pa) {
-      p.stage = Stage::reload;
-      p.unload_end = curve.rows.size() - 1;
-      drive(run, lane, 1);
-    } else if (p.stage == Stage::reload && stress_Pa >= config_.load_to_stress_Pa) {
-      run.finish(lane, RunStatus::completed, "loaded, unloaded and reloaded");
+    std::vector<std::size_t>& turn_rows = turn_rows_[k];
+    const double turn_Pa = turns_Pa_[turn_rows.size()];
+    const bool loading = turn_rows.size() % 2 == 0;
+    if (loading ? row[axial_stress] >= turn_Pa : row[axial_stress] <= turn_Pa) {
+      turn_rows.push_back(curve.rows.size() - 1);
+      if (turn_rows.size() < turns_Pa_.size()) drive(run, lane, loading ? -1 : 1);
+      else run.finish(lane, RunStatus::completed, "loaded, unloaded and reloaded");
     } else if (row[axial_strain] > config_.max_axial_strain) {
       run.finish(lane, RunStatus::not_settled,
                  fmt::format("reached strain {:.3g} at {:.4g} Pa, before {:.4g} Pa",
-                             row[axial_strain], stress_Pa, config_.load_to_stress_Pa));
+                             row[axial_strain], row[axial_stress],
+                             *std::ranges::max_element(turns_Pa_)));
     }
   }
 
   void read_features(ExperimentResult& r, std::size_t lane) const {
     const Curve& curve = r.curves.front();
-    const LaneProgress& p = progress_[lane];
+    const std::vector<std::size_t>& turn_rows = turn_rows_[lane];
     const double from_Pa = config_.load_from_stress_Pa;
     const double to_Pa = config_.load_to_stress_Pa;
+    const std::size_t load_end = turn_rows[0];
     const double strain_from =
-        first_crossing(curve, axial_strain, axial_stress, from_Pa, 0, p.load_end + 1);
+        first_crossing(curve, axial_strain, axial_stress, from_Pa, 0, load_end + 1);
     const double strain_to =
-        first_crossing(curve, axial_strain, axial_stress, to_Pa, 0, p.load_end + 1);
-    const auto& top_row = curve.rows[p.load_end];
-    const auto& low_row = curve.rows[p.unload_end];
-    const auto& end_row = curve.rows.back();
-    const auto secant = [](const std::vector<double>& a, const std::vector<double>& b) {
+        first_crossing(curve, axial_strain, axial_stress, to_Pa, 0, load_end + 1);
+    const auto& top_row = curve.rows[load_end];
+    const auto secant = [&curve](std::size_t from_row, std::size_t to_row) {
+      const auto& a = curve.rows[from_row];
+      const auto& b = curve.rows[to_row];
       return (b[axial_stress] - a[axial_stress]) / (b[axial_strain] - a[axial_strain]);
     };
+    // Reloading may go on to the second loop; its secant ends where the first one would.
+    std::size_t reload_end = turn_rows[1];
+    while (curve.rows[reload_end][axial_stress] < to_Pa) ++reload_end;
     r.features = {{"constrained_modulus_Pa", (to_Pa - from_Pa) / (strain_to - strain_from)},
-                  {"unload_modulus_Pa", secant(top_row, low_row)},
-                  {"reload_modulus_Pa", secant(low_row, end_row)},
+                  {"unload_modulus_Pa", secant(load_end, turn_rows[1])},
+                  {"reload_modulus_Pa", secant(turn_rows[1], reload_end)},
                   {"compression_strain", strain_to},
                   {"radial_stress_ratio", top_row[radial_stress] / top_row[axial_stress]}};
+    if (turn_rows.size() < 5) return;
+    r.features.push_back({"second_unload_modulus_Pa", secant(turn_rows[2], turn_rows[3])});
+    r.features.push_back({"second_reload_modulus_Pa", secant(turn_rows[3], turn_rows[4])});
   }
 
  private:
@@ -103,8 +117,7 @@ class OedometerProtocol {
     const std::size_t k = static_cast<std::size_t>(lane);
     curve.rows.push_back(
         {(config_.ring_height_m - height_m - lag_m) / config_.ring_height_m,
-         0.5 * (run.wall_force_N(top, lane).z() - run.wall_force_N(bottom, lane).z()) / area_m2,
-         radial_force_N(run, lane) / mantle_m2, run.workspace.num_broken[k]});
+         axial_force_N(run, lane) / area_m2, radial_force_N(run, lane) / mantle_m2, run.workspace.num_broken[k]});
   }
 
   /// Forces on the ring point everywhere outwards and cancel in the sum; their sum of magnitudes is
@@ -112,8 +125,9 @@ class OedometerProtocol {
   static double radial_force_N(const LaneRun& run, int lane);
 
   const ConfinedCompressionConfig& config_;
+  std::vector<double> turns_Pa_;
   std::vector<double> speed_m_per_s_;
-  std::vector<LaneProgress> progress_;
+  std::vector<std::vector<std::size_t>> turn_rows_;  ///< per lane, row of every turn so far
 };
 
 double OedometerProtocol::radial_force_N(const LaneRun& run, int lane) {
@@ -150,8 +164,9 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];
     if (r.status == RunStatus::completed) protocol.read_features(r, k);
-    r.inertial_number = speed_m_per_s[k] / config.ring_height_m * 2 * packing.mean_radius_m *
-                        std::sqrt(lanes[k].density_kg_per_m3 / config.load_to_stress_Pa);
+    r.inertial_number =
+        axial_inertial_number(speed_m_per_s[k], config.ring_height_m, packing.mean_radius_m,
+                              lanes[k].density_kg_per_m3, config.load_to_stress_Pa);
   }
   return run.results;
 }
@@ -168,19 +183,16 @@ std::vector<Field> fields(ConfinedCompressionConfig& c) {
           {"load_from_stress_Pa", &c.load_from_stress_Pa, 1, 1e9},
           {"load_to_stress_Pa", &c.load_to_stress_Pa, 1, 1e9},
           {"unload_to_stress_Pa", &c.unload_to_stress_Pa, 0, 1e9},
+          {"second_load_to_stress_Pa", &c.second_load_to_stress_Pa, 0, 1e9},
           {"platen_speed_over_wave_speed", &c.platen_speed_over_wave_speed, 1e-6, 1e-2},
           {"max_axial_strain", &c.max_axial_strain, 1e-3, 0.6},
+          {"platen_friction_scale", &c.platen_friction_scale, 0, 10},
           {"packing_seed", &c.packing_seed, 0, 9e15}};
 }
 
 PackingSpec packing_spec(const ConfinedCompressionConfig& c) {
-  return {.shape = ContainerShape::cylinder,
-          .radius_m = c.ring_radius_m,
-          .size_m = Vec3(2 * c.ring_radius_m, 2 * c.ring_radius_m, c.ring_height_m),
-          .num_particles = c.num_particles,
-          .porosity = c.porosity,
-          .size_spread = c.size_spread,
-          .seed = c.packing_seed};
+  return cylinder_packing(c.ring_radius_m, c.ring_height_m, c.num_particles, c.porosity,
+                          c.size_spread, c.packing_seed);
 }
 
 std::vector<ExperimentResult> run_confined_compression(std::span<const SoilMaterial> members,
@@ -188,10 +200,9 @@ std::vector<ExperimentResult> run_confined_compression(std::span<const SoilMater
                                                        PackingStore& packings,
                                                        const RunOptions& options) {
   const auto packing = packings.get(packing_spec(config));
-  return run_in_packs(densities_kg_per_m3(members), options,
-                      [&](std::span<const std::size_t> task_of_lane) {
-                        return run_pack(pick(members, task_of_lane), config, *packing, options);
-                      });
+  return run_members(members, options, [&](std::span<const SoilMaterial> lanes) {
+    return run_pack(lanes, config, *packing, options);
+  });
 }
 
 }  // namespace tilth

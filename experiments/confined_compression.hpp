@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Confined compression (oedometer) of a bonded disc with one unload-reload loop.
+// Confined compression (oedometer) of a bonded disc with one or two unload-reload loops.
 #pragma once
 
 #include <span>
@@ -19,8 +19,12 @@ struct ConfinedCompressionConfig {
   double load_from_stress_Pa = 25e3;   ///< the loading secant begins here
   double load_to_stress_Pa = 100e3;    ///< ... ends here, and unloading begins
   double unload_to_stress_Pa = 25e3;   ///< ... and ends here, and reloading begins
+  /// Above load_to: reloading goes on to this stress, and a second loop to unload_to and back
+  /// follows; else no such loop.
+  double second_load_to_stress_Pa = 0.0;
   double platen_speed_over_wave_speed = 3e-4;  ///< closing speed of both platens together
   double max_axial_strain = 0.4;
+  double platen_friction_scale = 1.0;  ///< times wall_friction: 0 greases the platens, not the ring
   std::uint64_t packing_seed = 1;
 };
 
@@ -36,7 +40,8 @@ PackingSpec packing_spec(const ConfinedCompressionConfig& config);
 /// compression. Curve `stress_strain`: axial_strain, axial_stress_Pa, radial_stress_Pa, bonds_broken.
 /// Features: constrained_modulus_Pa (secant of first loading from load_from to load_to),
 /// unload_modulus_Pa (secant of unloading from load_to to unload_to), reload_modulus_Pa,
-/// compression_strain (at load_to), radial_stress_ratio (at load_to).
+/// compression_strain (at load_to), radial_stress_ratio (at load_to); with a second loop
+/// second_unload_modulus_Pa and second_reload_modulus_Pa (secants turn to turn).
 /// A member that reaches max_axial_strain first is `not_settled`.
 std::vector<ExperimentResult> run_confined_compression(std::span<const SoilMaterial> members,
                                                        const ConfinedCompressionConfig& config,

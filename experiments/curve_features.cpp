@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/curve_features.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace tilth {
@@ -40,6 +41,11 @@ double mean_of(const Curve& curve, std::size_t column, std::size_t from, std::si
   double sum = 0.0;
   for (std::size_t k = from; k < to; ++k) sum += curve.rows[k][column];
   return sum / static_cast<double>(to - from);
+}
+
+double mean_of_last_quarter(const Curve& curve, std::size_t column) {
+  const std::size_t n = curve.rows.size();
+  return mean_of(curve, column, n - std::max<std::size_t>(n / 4, 1), n);
 }
 
 Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {

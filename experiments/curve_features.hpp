@@ -22,6 +22,9 @@ double first_crossing(const Curve& curve, std::size_t x, std::size_t y, double l
 /// Mean of a column over rows [from, to).
 double mean_of(const Curve& curve, std::size_t column, std::size_t from, std::size_t to);
 
+/// Mean of a column over the last quarter of the rows, at least one: the residual of a shear curve.
+double mean_of_last_quarter(const Curve& curve, std::size_t column);
+
 struct Line {
   double intercept = 0.0;
   double slope = 0.0;

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "experiments/curve_features.hpp"
+#include "experiments/cut_block.hpp"
 #include "experiments/servo.hpp"
 
 namespace tilth {
@@ -25,7 +25,7 @@ enum WallId : int {
   upper_right,
   upper_ledge
 };
-enum Column : std::size_t { displacement, shear_stress, normal_stress, vertical, broken };
+enum Column : std::size_t { displacement, shear_stress };  // of those read back
 
 PackingSpec packing_spec(const DirectShearConfig& c) {
   return {.shape = ContainerShape::box,
@@ -72,14 +72,8 @@ std::vector<Wall> box_walls(const DirectShearConfig& c) {
           ledge(0, -1, split, -1, reach)};
 }
 
-/// One shear test of one member: what the protocol of its lane needs.
-struct ShearTask {
-  SoilMaterial material;
-  double normal_stress_Pa = 0.0;
-};
-
 struct LaneProgress {
-  int steady_intervals = 0;   ///< consecutive ones with the normal stress on target
+  StressWatch consolidation;
   bool shearing = false;
   double start_time_s = 0.0;
   double start_height_m = 0.0;
@@ -87,24 +81,30 @@ struct LaneProgress {
 
 class ShearProtocol {
  public:
-  ShearProtocol(const DirectShearConfig& config, std::vector<ShearTask> tasks)
-      : config_(config), tasks_(std::move(tasks)), progress_(tasks_.size()) {}
+  ShearProtocol(const DirectShearConfig& config, std::span<const SoilMaterial> lanes,
+                std::span<const double> normal_stress_Pa)
+      : config_(config),
+        lanes_(lanes),
+        target_Pa_(normal_stress_Pa),
+        progress_(lanes.size()) {}
 
   double speed_m_per_s(std::size_t lane) const {
-    return config_.shear_speed_over_wave_speed * wave_speed_m_per_s(tasks_[lane].material);
+    return config_.shear_speed_over_wave_speed * wave_speed_m_per_s(lanes_[lane]);
   }
   double area_m2() const { return config_.box_length_m * config_.box_length_m; }
 
   void start(LaneRun& run) const {
-    for (std::size_t k = 0; k < tasks_.size(); ++k)
-      hold_stress(run, top, static_cast<int>(k), tasks_[k].normal_stress_Pa, area_m2(),
-                  2e-3 * wave_speed_m_per_s(tasks_[k].material));
+    for (std::size_t k = 0; k < lanes_.size(); ++k)
+      hold_stress(run, top, static_cast<int>(k), target_Pa_[k], area_m2(),
+                  2e-3 * wave_speed_m_per_s(lanes_[k]));
   }
 
   void operator()(LaneRun& run, int lane) {
-    LaneProgress& p = progress_[static_cast<std::size_t>(lane)];
+    const std::size_t k = static_cast<std::size_t>(lane);
+    LaneProgress& p = progress_[k];
     if (p.shearing) shear(run, lane, p);
-    else consolidate(run, lane, p);
+    else if (p.consolidation.stands(run, lane, normal_stress_Pa(run, lane), target_Pa_[k]))
+      begin_shear(run, lane, p);
   }
 
   /// Long enough that the peak is not the largest of many noisy readings.
@@ -113,18 +113,6 @@ class ShearProtocol {
  private:
   double normal_stress_Pa(const LaneRun& run, int lane) const {
     return 0.5 * (run.wall_force_N(top, lane).z() - run.wall_force_N(bottom, lane).z()) / area_m2();
-  }
-
-  void consolidate(LaneRun& run, int lane, LaneProgress& p) {
-    const std::size_t k = static_cast<std::size_t>(lane);
-    const double target_Pa = tasks_[k].normal_stress_Pa;
-    const bool on_target = std::abs(normal_stress_Pa(run, lane) - target_Pa) < 0.02 * target_Pa;
-    p.steady_intervals = on_target ? p.steady_intervals + 1 : 0;
-    if (p.steady_intervals >= 3) begin_shear(run, lane, p);
-    else if (run.specimen.state.num_steps > 200'000)
-      run.finish(lane, RunStatus::not_settled,
-                 fmt::format("normal stress {:.4g} Pa did not settle at {:.4g} Pa",
-                             normal_stress_Pa(run, lane), target_Pa));
   }
 
   void begin_shear(LaneRun& run, int lane, LaneProgress& p) {
@@ -155,28 +143,28 @@ class ShearProtocol {
   }
 
   const DirectShearConfig& config_;
-  std::vector<ShearTask> tasks_;
+  std::span<const SoilMaterial> lanes_;
+  std::span<const double> target_Pa_;
   std::vector<LaneProgress> progress_;
 };
 
-std::vector<ExperimentResult> run_pack(const std::vector<ShearTask>& tasks,
+std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
+                                       std::span<const double> normal_stress_Pa,
                                        const DirectShearConfig& config, const Packing& packing,
                                        const RunOptions& options) {
-  std::vector<SoilMaterial> lanes;
-  for (const ShearTask& t : tasks) lanes.push_back(t.material);
   LaneRun run(make_specimen(packing, lanes, box_walls(config), {config.bond_gap_over_radius}));
-  for (std::size_t k = 0; k < tasks.size(); ++k)
-    run.results[k].curves = {{fmt::format("shear_{:.0f}Pa", tasks[k].normal_stress_Pa),
+  for (std::size_t k = 0; k < lanes.size(); ++k)
+    run.results[k].curves = {{fmt::format("shear_{:.0f}Pa", normal_stress_Pa[k]),
                               {"shear_displacement_m", "shear_stress_Pa", "normal_stress_Pa",
                                "vertical_displacement_m", "bonds_broken"},
                               {}}};
-  ShearProtocol protocol(config, tasks);
+  ShearProtocol protocol(config, lanes, normal_stress_Pa);
   protocol.start(run);
   run_protocol(run, ShearProtocol::interval_steps, 4'000'000, options.stop, std::ref(protocol));
-  for (std::size_t k = 0; k < tasks.size(); ++k)
+  for (std::size_t k = 0; k < lanes.size(); ++k)
     run.results[k].inertial_number =
         protocol.speed_m_per_s(k) / config.box_height_m * 2 * packing.mean_radius_m *
-        std::sqrt(lanes[k].density_kg_per_m3 / tasks[k].normal_stress_Pa);
+        std::sqrt(lanes[k].density_kg_per_m3 / normal_stress_Pa[k]);
   return run.results;
 }
 
@@ -190,33 +178,25 @@ void add_line_features(const std::vector<double>& normal_Pa, const std::vector<d
 
 /// Joins the shear tests of one member; the first failure is the member's.
 ExperimentResult join(const DirectShearConfig& config, std::span<ExperimentResult> tests) {
-  ExperimentResult member;
+  ExperimentResult member = joined_status(
+      tests,
+      [&config](std::size_t k) {
+        return fmt::format("at normal stress {:.4g} Pa: ", config.normal_stress_Pa[k]);
+      },
+      "sheared at every normal stress");
   std::vector<double> peaks_Pa, residuals_Pa;
-  member.status = RunStatus::completed;
-  member.message = "sheared at every normal stress";
   for (std::size_t k = 0; k < tests.size(); ++k) {
-    ExperimentResult& test = tests[k];
+    if (tests[k].status != RunStatus::completed) continue;
     const double p = config.normal_stress_Pa[k];
-    member.dt_s = test.dt_s;
-    member.num_steps += test.num_steps;
-    member.inertial_number = std::max(member.inertial_number, test.inertial_number);
-    if (test.status != RunStatus::completed) {
-      if (member.status == RunStatus::completed) {
-        member.status = test.status;
-        member.message = fmt::format("at normal stress {:.4g} Pa: {}", p, test.message);
-      }
-      continue;
-    }
-    const Curve& curve = test.curves.front();
+    Curve& curve = tests[k].curves.front();
     const std::size_t peak = row_of_largest(curve, shear_stress);
-    const std::size_t n = curve.rows.size();
     peaks_Pa.push_back(curve.rows[peak][shear_stress]);
-    residuals_Pa.push_back(mean_of(curve, shear_stress, n - std::max<std::size_t>(n / 4, 1), n));
+    residuals_Pa.push_back(mean_of_last_quarter(curve, shear_stress));
     const auto at = [p](const char* name) { return fmt::format("{}@{:.0f}", name, p); };
     member.features.push_back({at("peak_shear_stress_Pa"), peaks_Pa.back()});
     member.features.push_back({at("residual_shear_stress_Pa"), residuals_Pa.back()});
     member.features.push_back({at("displacement_at_peak_m"), curve.rows[peak][displacement]});
-    member.curves.push_back(std::move(test.curves.front()));
+    member.curves.push_back(std::move(curve));
   }
   if (member.status != RunStatus::completed) {
     member.features.clear();
@@ -239,33 +219,20 @@ std::vector<Field> fields(DirectShearConfig& c) {
           {"normal_stress_Pa", &c.normal_stress_Pa, 1, 1e8},
           {"shear_speed_over_wave_speed", &c.shear_speed_over_wave_speed, 1e-6, 1e-2},
           {"max_shear_strain", &c.max_shear_strain, 1e-3, 0.5},
+          {"cut_angle_rad", &c.cut_angle_rad, -3.2, 3.2},
           {"packing_seed", &c.packing_seed, 0, 9e15}};
 }
 
 std::vector<ExperimentResult> run_direct_shear(std::span<const SoilMaterial> members,
                                                const DirectShearConfig& config,
                                                PackingStore& packings, const RunOptions& options) {
-  const auto packing = packings.get(packing_spec(config));
-  // Tests of one normal stress stand together, since they consolidate alike.
-  std::vector<ShearTask> tasks;
-  for (const double p : config.normal_stress_Pa)
-    for (const SoilMaterial& m : members) tasks.push_back({m, p});
-  std::vector<double> density;
-  for (const ShearTask& t : tasks) density.push_back(t.material.density_kg_per_m3);
-  std::vector<ExperimentResult> tests =
-      run_in_packs(density, options, [&](std::span<const std::size_t> task_of_lane) {
-        std::vector<ShearTask> lanes;
-        for (const std::size_t task : task_of_lane) lanes.push_back(tasks[task]);
-        return run_pack(lanes, config, *packing, options);
-      });
-  std::vector<ExperimentResult> results;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    std::vector<ExperimentResult> own;
-    for (std::size_t k = 0; k < config.normal_stress_Pa.size(); ++k)
-      own.push_back(std::move(tests[k * members.size() + m]));
-    results.push_back(join(config, own));
-  }
-  return results;
+  const auto packing = cut_block(packings, packing_spec(config), config.cut_angle_rad);
+  return run_settings(
+      members, config.normal_stress_Pa, options,
+      [&](std::span<const SoilMaterial> lanes, std::span<const double> normal_stress_Pa) {
+        return run_pack(lanes, normal_stress_Pa, config, *packing, options);
+      },
+      [&config](std::span<ExperimentResult> tests) { return join(config, tests); });
 }
 
 }  // namespace tilth

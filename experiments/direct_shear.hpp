@@ -19,6 +19,9 @@ struct DirectShearConfig {
   std::vector<double> normal_stress_Pa = {10e3, 20e3, 40e3};
   double shear_speed_over_wave_speed = 3e-4;  ///< of the upper half, over sqrt((E_c + E_b) / rho)
   double max_shear_strain = 0.10;             ///< displacement over box length
+  /// Not 0: the block is cut from a larger packing turned by this angle about y (across the shear
+  /// plane's direction of motion); see cut_block().
+  double cut_angle_rad = 0.0;
   std::uint64_t packing_seed = 1;
 };
 

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/servo.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace tilth {
 
 void hold_stress(LaneRun& run, int wall, int lane, double stress_Pa, double area_m2,
@@ -15,6 +19,17 @@ void hold_stress(LaneRun& run, int wall, int lane, double stress_Pa, double area
   drive.servo_integral_gain_m_per_N_s2 = 1e-3 / (layer_N_per_m * law.dt_s * law.dt_s);
   drive.target_force_N = stress_Pa * area_m2;
   drive.max_speed_m_per_s = max_speed_m_per_s;
+}
+
+bool StressWatch::stands(LaneRun& run, int lane, double stress_Pa, double target_Pa) {
+  const bool on_target = std::abs(stress_Pa - target_Pa) < 0.02 * target_Pa;
+  steady_readings_ = on_target ? steady_readings_ + 1 : 0;
+  if (steady_readings_ >= 3) return true;
+  if (run.specimen.state.num_steps > 200'000)
+    run.finish(lane, RunStatus::not_settled,
+               fmt::format("normal stress {:.4g} Pa did not settle at {:.4g} Pa", stress_Pa,
+                           target_Pa));
+  return false;
 }
 
 }  // namespace tilth

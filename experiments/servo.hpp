@@ -20,4 +20,14 @@ namespace tilth {
 void hold_stress(LaneRun& run, int wall, int lane, double stress_Pa, double area_m2,
                  double max_speed_m_per_s);
 
+/// Watches one lane's held stress until it stands: within 2 % of its target in 3 readings running.
+class StressWatch {
+ public:
+  /// True once it stands; ends the lane as `not_settled` where that takes more than 200 000 steps.
+  bool stands(LaneRun& run, int lane, double stress_Pa, double target_Pa);
+
+ private:
+  int steady_readings_ = 0;
+};
+
 }  // namespace tilth

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/specimen.hpp"
 
+#include <algorithm>
+
 #include "dem_core/neighbours.hpp"
 #include "dem_core/time_step.hpp"
 #include "dem_core/wall_geometry.hpp"
@@ -23,13 +25,17 @@ void add_bonds_and_references(Model& model, const State& state, double mean_radi
   }
 }
 
-void add_wall_references(Model& model, const State& state) {
-  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w)
+void add_wall_references(Model& model, const State& state, double mean_radius_m,
+                         const BondingSpec& bonding) {
+  const double gap_m = std::max(bonding.max_gap_over_radius, 0.0) * mean_radius_m;
+  for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
+    const bool glued = std::ranges::find(bonding.glued_walls, w) != bonding.glued_walls.end();
     for (int i = 0; i < model.num_particles(); ++i) {
       const double distance_m = wall_distance_m(model, state, w, state.position_m(i));
-      if (distance_m < model.radius_m[as_size(i)])
-        model.wall_references.push_back({w, i, distance_m});
+      if (distance_m < model.radius_m[as_size(i)] + (glued ? gap_m : 0.0))
+        model.wall_references.push_back({w, i, distance_m, glued});
     }
+  }
 }
 
 }  // namespace
@@ -46,7 +52,7 @@ Specimen make_specimen(const Packing& packing, std::span<const SoilMaterial> mat
   s.model.mass_kg = sphere_masses_kg(packing.radius_m, materials.front().density_kg_per_m3);
   const State placed = initial_state(s.model, packing.position_m);
   add_bonds_and_references(s.model, placed, packing.mean_radius_m, bonding);
-  add_wall_references(s.model, placed);
+  add_wall_references(s.model, placed, packing.mean_radius_m, bonding);
   s.state = initial_state(s.model, packing.position_m);
   for (int lane = 0; lane < s.model.num_lanes(); ++lane)
     s.model.lanes[as_size(lane)].dt_s =

@@ -15,6 +15,8 @@ namespace tilth {
 struct BondingSpec {
   /// Pairs with a gap below this share of the mean radius are bonded; < 0 bonds nothing.
   double max_gap_over_radius = 0.1;
+  /// Numbers of the walls that hold every grain within that gap by glue, for good.
+  std::vector<int> glued_walls = {};
 };
 
 struct Specimen {

@@ -3,38 +3,12 @@
 #include "experiments/unconfined_compression.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "experiments/curve_features.hpp"
-#include "experiments/lane_run.hpp"
+#include "experiments/platens.hpp"
 
 namespace tilth {
 namespace {
-
-enum PlatenId : int { bottom, top };
-
-std::vector<Wall> platens(const UnconfinedCompressionConfig& config) {
-  return {{.direction = Vec3::UnitZ()},
-          {.direction = -Vec3::UnitZ(), .position_m = config.specimen_height_m * Vec3::UnitZ()}};
-}
-
-/// Platens and grains start with the velocity field of uniform axial straining, so that no shock
-/// runs through the specimen.
-void start_closing(LaneRun& run, const UnconfinedCompressionConfig& config,
-                   std::span<const double> speed_m_per_s) {
-  State& state = run.specimen.state;
-  const std::size_t lanes = speed_m_per_s.size();
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const double v = speed_m_per_s[lane];
-    state.drive(bottom, static_cast<int>(lane)).velocity_m_per_s = 0.5 * v * Vec3::UnitZ();
-    state.drive(top, static_cast<int>(lane)).velocity_m_per_s = -0.5 * v * Vec3::UnitZ();
-    for (std::size_t i = 0; i < run.specimen.model.radius_m.size(); ++i) {
-      const double z = state.position_m(static_cast<int>(i), static_cast<int>(lane)).z();
-      state.motion[(i * 9 + 5) * lanes + lane] = v * (0.5 - z / config.specimen_height_m);
-    }
-  }
-}
 
 void read_features(ExperimentResult& result, double num_bonds) {
   const Curve& curve = result.curves.front();
@@ -46,48 +20,54 @@ void read_features(ExperimentResult& result, double num_bonds) {
       {"bonds_broken_at_peak", num_bonds > 0 ? curve.rows[peak][2] / num_bonds : 0.0}};
 }
 
+/// Lanes at their share of the configured platen speed: 1 or fast_rate_ratio.
 std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
+                                       std::span<const double> rate_ratio,
                                        const UnconfinedCompressionConfig& config,
                                        const Packing& packing, const RunOptions& options) {
   // 1. bond the packing between the platens
-  LaneRun run(make_specimen(packing, lanes, platens(config), {config.bond_gap_over_radius}));
-  std::vector<double> speed_m_per_s;
-  for (const SoilMaterial& m : lanes)
-    speed_m_per_s.push_back(config.platen_speed_over_wave_speed * wave_speed_m_per_s(m));
-  for (ExperimentResult& r : run.results)
-    r.curves = {{"stress_strain", {"axial_strain", "axial_stress_Pa", "bonds_broken"}, {}}};
+  LaneRun run(make_specimen(packing, lanes, platens(config.specimen_height_m),
+                            {config.bond_gap_over_radius}));
+  AxialLoading loading{.radius_m = config.specimen_radius_m,
+                       .height_m = config.specimen_height_m,
+                       .max_axial_strain = config.max_axial_strain,
+                       .stop_at_peak_share = config.stop_at_peak_share};
+  for (std::size_t k = 0; k < lanes.size(); ++k) {
+    loading.speed_m_per_s.push_back(config.platen_speed_over_wave_speed *
+                                    wave_speed_m_per_s(lanes[k]) * rate_ratio[k]);
+    run.results[k].curves = {{rate_ratio[k] == 1 ? "stress_strain" : "stress_strain_fast",
+                              {"axial_strain", "axial_stress_Pa", "bonds_broken"},
+                              {}}};
+  }
 
   // 2. close the platens until the stress has fallen or the strain is reached
-  start_closing(run, config, speed_m_per_s);
-  const double area_m2 = std::numbers::pi * config.specimen_radius_m * config.specimen_radius_m;
-  constexpr int interval_steps = 20;
-  const auto protocol = [&](LaneRun& r, int lane) {
-    const std::size_t k = static_cast<std::size_t>(lane);
-    Curve& curve = r.results[k].curves.front();
-    const double middle_s = r.time_s(lane) - 0.5 * interval_steps * r.dt_s(lane);
-    const double strain = middle_s * speed_m_per_s[k] / config.specimen_height_m;
-    const double stress_Pa =
-        0.5 * (r.wall_force_N(top, lane).z() - r.wall_force_N(bottom, lane).z()) / area_m2;
-    curve.rows.push_back({strain, stress_Pa, r.workspace.num_broken[k]});
-    const std::size_t peak = row_of_largest(curve, 1);
-    const bool fallen = curve.rows[peak][1] > 0 && strain > 1.15 * curve.rows[peak][0] &&
-                        stress_Pa < config.stop_at_peak_share * curve.rows[peak][1];
-    if (fallen || strain >= config.max_axial_strain)
-      r.finish(lane, RunStatus::completed, fallen ? "past the peak" : "at the strain limit");
-  };
-  run_protocol(run, interval_steps, 2'000'000, options.stop, protocol);
+  run_past_peak(run, loading, options.stop);
 
   // 3. read the curve
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];
     if (r.status != RunStatus::completed) continue;
     read_features(r, static_cast<double>(run.specimen.model.bonds.size()));
-    const double strain_rate_per_s = speed_m_per_s[k] / config.specimen_height_m;
-    r.inertial_number = strain_rate_per_s * 2 * packing.mean_radius_m *
-                        std::sqrt(lanes[k].density_kg_per_m3 /
-                                  std::max(r.feature("peak_stress_Pa"), 1e-9));
+    r.inertial_number = axial_inertial_number(
+        loading.speed_m_per_s[k], config.specimen_height_m, packing.mean_radius_m,
+        lanes[k].density_kg_per_m3, std::max(r.feature("peak_stress_Pa"), 1e-9));
   }
   return run.results;
+}
+
+/// The slow run is the result; a fast one beside it adds its curve and the ratio of the peaks.
+ExperimentResult join(std::span<ExperimentResult> runs) {
+  if (runs.size() == 1) return std::move(runs.front());
+  ExperimentResult member = joined_status(
+      runs, [](std::size_t k) { return k == 0 ? "" : "at the fast rate: "; }, runs[0].message);
+  member.inertial_number = runs[0].inertial_number;
+  if (member.status == RunStatus::completed) {
+    member.features = runs[0].features;
+    member.features.push_back({"fast_peak_ratio", runs[1].feature("peak_stress_Pa") /
+                                                      runs[0].feature("peak_stress_Pa")});
+  }
+  for (ExperimentResult& r : runs) member.curves.push_back(std::move(r.curves.front()));
+  return member;
 }
 
 }  // namespace
@@ -102,17 +82,13 @@ std::vector<Field> fields(UnconfinedCompressionConfig& c) {
           {"platen_speed_over_wave_speed", &c.platen_speed_over_wave_speed, 1e-6, 1e-2},
           {"max_axial_strain", &c.max_axial_strain, 1e-3, 0.5},
           {"stop_at_peak_share", &c.stop_at_peak_share, 0, 0.99},
+          {"fast_rate_ratio", &c.fast_rate_ratio, 1, 1000},
           {"packing_seed", &c.packing_seed, 0, 9e15}};
 }
 
 PackingSpec packing_spec(const UnconfinedCompressionConfig& c) {
-  return {.shape = ContainerShape::cylinder,
-          .radius_m = c.specimen_radius_m,
-          .size_m = Vec3(2 * c.specimen_radius_m, 2 * c.specimen_radius_m, c.specimen_height_m),
-          .num_particles = c.num_particles,
-          .porosity = c.porosity,
-          .size_spread = c.size_spread,
-          .seed = c.packing_seed};
+  return cylinder_packing(c.specimen_radius_m, c.specimen_height_m, c.num_particles, c.porosity,
+                          c.size_spread, c.packing_seed);
 }
 
 std::vector<ExperimentResult> run_unconfined_compression(std::span<const SoilMaterial> members,
@@ -120,10 +96,14 @@ std::vector<ExperimentResult> run_unconfined_compression(std::span<const SoilMat
                                                          PackingStore& packings,
                                                          const RunOptions& options) {
   const auto packing = packings.get(packing_spec(config));
-  return run_in_packs(densities_kg_per_m3(members), options,
-                      [&](std::span<const std::size_t> task_of_lane) {
-                        return run_pack(pick(members, task_of_lane), config, *packing, options);
-                      });
+  std::vector<double> rate_ratios = {1.0};
+  if (config.fast_rate_ratio > 1) rate_ratios.push_back(config.fast_rate_ratio);
+  return run_settings(
+      members, rate_ratios, options,
+      [&](std::span<const SoilMaterial> lanes, std::span<const double> rate_ratio) {
+        return run_pack(lanes, rate_ratio, config, *packing, options);
+      },
+      join);
 }
 
 }  // namespace tilth

@@ -21,6 +21,8 @@ struct UnconfinedCompressionConfig {
   double platen_speed_over_wave_speed = 2e-4;
   double max_axial_strain = 0.15;
   double stop_at_peak_share = 0.7;    ///< ends when the stress has fallen to this share of its peak
+  /// > 1: a second run of the same specimen with platens this many times as fast; 1: no such run.
+  double fast_rate_ratio = 1.0;
   std::uint64_t packing_seed = 1;
 };
 
@@ -34,7 +36,9 @@ PackingSpec packing_spec(const UnconfinedCompressionConfig& config);
 /// Stress = mean of both platen forces over the initial area, compression positive; strain = closing
 /// over initial height. Curve `stress_strain`: axial_strain, axial_stress_Pa, bonds_broken.
 /// Features: peak_stress_Pa (largest stress up to max_axial_strain), strain_at_peak,
-/// secant_modulus_Pa (from the origin to half the peak), bonds_broken_at_peak (share of all bonds).
+/// secant_modulus_Pa (from the origin to half the peak), bonds_broken_at_peak (share of all bonds);
+/// with fast_rate_ratio > 1 also the curve `stress_strain_fast` and the feature fast_peak_ratio
+/// = peak of the fast run / peak of the slow one. All other numbers are those of the slow run.
 std::vector<ExperimentResult> run_unconfined_compression(std::span<const SoilMaterial> members,
                                                          const UnconfinedCompressionConfig& config,
                                                          PackingStore& packings,

@@ -63,7 +63,7 @@ std::vector<FigureMark> stress_marks(const SoilData& soil, const PlannedTest& te
     const bool stress = t.observable_id.find("stress_Pa") != std::string::npos;
     const std::size_t at = a.feature.find('@');
     const bool here =
-        at == std::string::npos || curve_name == "shear_" + a.feature.substr(at + 1) + "Pa";
+        at == std::string::npos || curve_name.ends_with("_" + a.feature.substr(at + 1) + "Pa");
     if (!stress || !here) continue;
     const double factor = t.sigma_kind == SigmaKind::log ? std::exp(t.sigma) : 0.0;
     marks.push_back({fmt::format("{} ({}{})", t.observable_id, to_string(t.origin.provenance),
@@ -147,6 +147,10 @@ TargetRow target_row(const TargetResult& t, bool holdout) {
 CurveStyle curve_style(const std::string& test_id) {
   if (test_id == "direct_shear")
     return {"shear displacement (mm)", "shear stress (kPa)", 0, 1, 1e3, 1e-3};
+  if (test_id == "interface_shear")
+    return {"travel of the steel (mm)", "interface stress (kPa)", 0, 1, 1e3, 1e-3};
+  if (test_id == "direct_tension")
+    return {"axial strain (%), extension", "tensile stress (kPa)", 0, 1, 1e2, 1e-3};
   return {"axial strain (%)", "axial stress (kPa)", 0, 1, 1e2, 1e-3};
 }
 

@@ -55,6 +55,15 @@ void apply_fidelity(DrainedTriaxialConfig& c, Fidelity fidelity) {
     case Fidelity::search: c.num_particles = 400, c.inertial_number = 2e-3; break;
     case Fidelity::confirm: c.num_particles = 1000, c.inertial_number = 1e-3; break;
   }
+void apply_fidelity(DirectTensionConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  // As brittle as unconfined compression.
+  c.pull_speed_over_wave_speed = 0.25 * size_of(fidelity).speed_over_wave_speed;
+}
+
+void apply_fidelity(InterfaceShearConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  c.slide_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
 }
 
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
@@ -87,12 +96,20 @@ bool same_values(TestConfig a, TestConfig b) {
   return std::ranges::equal(left, right, [](const Field& x, const Field& y) {
     return field_text(x) == field_text(y);
   });
+std::vector<ExperimentResult> run(const DirectTensionConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_direct_tension(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const InterfaceShearConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_interface_shear(m, c, p, o);
 }
 
 const std::vector<TestConfig>& all_tests() {
   static const std::vector<TestConfig> tests = {
       UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
       DrainedTriaxialConfig{}};
+      DirectTensionConfig{}, InterfaceShearConfig{}};
   return tests;
 }
 
@@ -101,6 +118,7 @@ const std::vector<TestConfig>& all_tests() {
 const char* test_id(const TestConfig& config) {
   constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
                                  "drained_triaxial"};
+                                 "direct_tension", "interface_shear"};
   return ids[config.index()];
 }
 

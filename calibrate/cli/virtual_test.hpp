@@ -12,6 +12,8 @@
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/drained_triaxial.hpp"
+#include "experiments/direct_tension.hpp"
+#include "experiments/interface_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
 
 namespace tilth {
@@ -19,6 +21,7 @@ namespace tilth {
 using TestConfig =
     std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
                  DrainedTriaxialConfig>;
+                 DirectTensionConfig, InterfaceShearConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -28,6 +31,7 @@ enum class Fidelity {
 };
 
 /// "unconfined_compression", "direct_shear", ...
+/// "unconfined_compression", "direct_shear", "confined_compression", ...
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests

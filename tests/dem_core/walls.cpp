@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "dem_core/packing.hpp"
+#include "dem_core/time_step.hpp"
 #include "dem_core/wall_geometry.hpp"
 #include "tests/support/scene.hpp"
 
@@ -221,4 +222,86 @@ TEST_CASE("walls: a moving belt rolls a sphere to 2/7 of its speed and carries a
   // the belt's friction acts at the contact point: m d v = I w and v + w d = V
   CHECK_THAT(on_belt(false), WithinRel(0.7 * 2 / 7, 2e-4));  // 2e-4: d = r (1 - 1e-4)
   CHECK_THAT(on_belt(true), WithinRel(0.7, 1e-6));
+}
+
+TEST_CASE("walls: a greased wall beside a rough one drags nothing", "[dem_core][walls]") {
+  // One sphere between two plates that slide along +y and -y, pressed by 2000 N: what the rough one
+  // rubs is friction times scale times the normal force, the greased one rubs nothing.
+  for (const double scale : {0.0, 0.5, 1.0}) {
+    Scene scene;
+    scene.sphere({0, 0, 0.8}, 1.0, testing::fixed_mass_kg);
+    const int floor = scene.plane(Vec3::UnitZ());
+    const int lid = scene.plane(-Vec3::UnitZ(), {0, 0, 1.6});
+    scene.model.walls[static_cast<std::size_t>(floor)].friction_scale = scale;
+    scene.model.walls[static_cast<std::size_t>(lid)].friction_scale = 0;
+    scene.law().wall_friction = 0.4;
+    scene.begin();
+    scene.state.drive(floor, 0).velocity_m_per_s = Vec3::UnitY();
+    scene.state.drive(lid, 0).velocity_m_per_s = -Vec3::UnitY();
+    scene.run(2000);  // 0.2 m of travel; the spring slips after 0.16 m
+    CAPTURE(scale);
+    // rounding; the grain is too heavy to move
+    CHECK_THAT(scene.state.wall_force_N(floor).y(), WithinAbs(-0.4 * scale * 2000, 1e-6));
+    CHECK(scene.state.wall_force_N(lid).y() == 0);
+    CHECK_THAT(scene.state.wall_force_N(floor).z(), WithinRel(-2000.0, 1e-9));
+  }
+}
+
+TEST_CASE("walls: a glued grain hangs from its wall", "[dem_core][walls]") {
+  Scene scene;
+  scene.sphere({0, 0, -1.3}, 1, 2);  // under the plane, with a gap
+  const int ceiling = scene.plane(-Vec3::UnitZ());
+  scene.model.wall_references.push_back({ceiling, 0, 1.3, true});
+  scene.model.gravity_m_per_s2 = {0, 0, -10};
+  scene.law().normal_damping = 1;
+  scene.law().dt_s = 1e-3;
+  scene.begin();
+  scene.run(3000);
+  // k = 1e4 N/m; 1e-9: the damped swing is gone
+  CHECK_THAT(-1.3 - scene.state.position_m(0).z(), WithinRel(20 / 1e4, 1e-9));
+  CHECK_THAT(scene.state.wall_force_N(ceiling).z(), WithinRel(-20.0, 1e-9));
+  CHECK_THAT(scene.energy_now().walls_J, WithinRel(0.5 * 20 * 20 / 1e4, 1e-9));
+  // The stable step knows the glue across the gap (theory/time_step.md, 5): the tangential spring
+  // with its lever is the stiffer one, the normal dashpot the only one.
+  const double lever_m = -scene.state.position_m(0).z();
+  const double k = 0.5e4 * (1.0 / 2 + lever_m * lever_m / (0.4 * 2));
+  const double c = std::sqrt(2 * 1e4) / 2;
+  CHECK_THAT(stable_time_step_s(scene.model, scene.state, 0),
+             WithinRel(4 / (c + std::sqrt(c * c + 4 * k)), 1e-9));
+}
+
+TEST_CASE("walls: glue neither slips nor lets go", "[dem_core][walls]") {
+  Scene scene;
+  scene.sphere({0, 0, 0.9}, 1.0, testing::fixed_mass_kg);
+  const int plate = scene.plane(Vec3::UnitZ());
+  scene.model.wall_references.push_back({plate, 0, 0.9, true});
+  scene.law().wall_friction = 0.01;
+  scene.begin();
+  scene.state.drive(plate, 0).velocity_m_per_s = {0.7, 0, -2};
+  scene.run(2000);
+  // 0.14 m aside and 0.4 m away: k_s = 0.5e4 N/m, k_n = 1e4 N/m on a grain that cannot move
+  const Vec3 expected_N(-0.5e4 * 0.14, 0, 1e4 * 0.4);
+  CHECK((scene.state.wall_force_N(plate) - expected_N).norm() < 1e-9 * expected_N.norm());
+}
+
+TEST_CASE("walls: a grain that comes over the rim of an edgeless rectangle meets it at once",
+          "[dem_core][walls]") {
+  // The list must know the grain while it is still beside, where the wall does not act: it travels
+  // 0.05 m, less than the skin of 0.3 m that would have the list made anew.
+  Scene scene;
+  scene.sphere({-0.05, 0, 0.9});
+  Wall shelf;
+  shelf.position_m = {3, 0, 0};
+  shelf.half_a_m = shelf.half_b_m = 3;
+  shelf.has_edges = false;
+  scene.model.walls.push_back(shelf);
+  scene.begin();
+  scene.state.set_velocity_m_per_s(0, {1, 0, 0});
+  scene.run(490);  // 0.049 m
+  CHECK(scene.state.velocity_m_per_s(0).z() == 0);
+  scene.run(30);
+  // 20 steps of 1e-4 s under 0.1 m of overlap, 1e4 N/m and 1 kg: v = 0.1 m w sin(w t), w = 100 / s;
+  // 10 %: one step more or less
+  CHECK(scene.workspace.num_rebuilds == 1);
+  CHECK_THAT(scene.state.velocity_m_per_s(0).z(), WithinRel(10 * std::sin(0.2), 0.1));
 }

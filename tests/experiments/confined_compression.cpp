@@ -99,3 +99,50 @@ TEST_CASE("Confined compression: the loop turns at its stresses", "[experiments]
   REQUIRE_THAT(largest_Pa, WithinRel(100e3, 0.03));
   REQUIRE_THAT(after_peak_Pa, WithinRel(25e3, 0.12));
 }
+
+TEST_CASE("Confined compression: a second loop follows the first one's curve and adds its moduli",
+          "[experiments][confined]") {
+  ConfinedCompressionConfig config = small_confined(3e-4);
+  config.bond_gap_over_radius = -1;
+  const ExperimentResult one = compress(bonded_soil(), config);
+  config.second_load_to_stress_Pa = 200e3;
+  const ExperimentResult two = compress(bonded_soil(), config);
+  for (const Feature& f : one.features) REQUIRE(two.feature(f.name) == f.value);
+  const auto& rows = two.curves.front().rows;
+  for (std::size_t n = 0; n < one.curves.front().rows.size(); ++n)
+    REQUIRE(rows[n] == one.curves.front().rows[n]);
+  // Loose grains stiffen with stress, and unload stiffer than they load.
+  REQUIRE(two.feature("second_unload_modulus_Pa") > two.feature("unload_modulus_Pa"));
+  REQUIRE(two.feature("second_reload_modulus_Pa") > two.feature("constrained_modulus_Pa"));
+  REQUIRE(std::isnan(one.feature("second_unload_modulus_Pa")));
+  // A linear specimen has one modulus in both loops.
+  config = small_confined(1e-4);
+  config.second_load_to_stress_Pa = 200e3;
+  const ExperimentResult linear = compress(linear_soil(), config);
+  REQUIRE_THAT(linear.feature("second_unload_modulus_Pa"),
+               WithinRel(linear.feature("unload_modulus_Pa"), 0.02));
+  REQUIRE_THAT(linear.feature("second_reload_modulus_Pa"),
+               WithinRel(linear.feature("unload_modulus_Pa"), 0.02));
+}
+
+TEST_CASE("Confined compression: a rough ring takes its share of the load as Janssen has it",
+          "[experiments][confined]") {
+  // Both platens move, so the ring drags from either end to the middle: with sigma the axial and
+  // K sigma the radial stress, d sigma / dz = -4 K mu sigma / D over half the height h / 2. The mean
+  // radial stress over K times the stress at the platens is then
+  //   (1 - exp(-x)) / x,   x = 4 K mu (h / 2) / D.
+  ConfinedCompressionConfig ring{.ring_radius_m = 0.015,
+                                 .ring_height_m = 0.06,
+                                 .num_particles = 400,
+                                 .platen_speed_over_wave_speed = 3e-4,
+                                 .platen_friction_scale = 0};
+  SoilMaterial soil = linear_soil();
+  const double k0 = compress(soil, ring).feature("radial_stress_ratio");
+  for (const double friction : {0.2, 0.5}) {
+    soil.wall_friction = friction;
+    const double ratio = compress(soil, ring).feature("radial_stress_ratio") / k0;
+    const double x = 4 * k0 * friction * 0.5 * ring.ring_height_m / (2 * ring.ring_radius_m);
+    CAPTURE(friction, k0, ratio, x);
+    REQUIRE_THAT(ratio, WithinRel((1 - std::exp(-x)) / x, 0.05));
+  }
+}

@@ -51,6 +51,11 @@ TEST_CASE("Curve: the secant of y = a sqrt(x) at a share of its end is a / (shar
 
 TEST_CASE("Curve: mean and straight line have their closed forms", "[experiments][curve]") {
   REQUIRE_THAT(mean_of(curve({{0, 1}, {0, 2}, {0, 6}, {0, 9}}), 1, 1, 3), WithinRel(4.0, rounding));
+  // The last quarter of nine rows is two of them; of three rows it is the last one.
+  REQUIRE_THAT(mean_of_last_quarter(
+                   curve({{0, 9}, {0, 9}, {0, 9}, {0, 9}, {0, 9}, {0, 9}, {0, 9}, {0, 2}, {0, 4}}), 1),
+               WithinRel(3.0, rounding));
+  REQUIRE_THAT(mean_of_last_quarter(curve({{0, 1}, {0, 2}, {0, 6}}), 1), WithinRel(6.0, rounding));
   const Line exact = fit_line({10e3, 20e3, 40e3}, {8e3, 13e3, 23e3});
   REQUIRE_THAT(exact.slope, WithinRel(0.5, 1e-12));
   REQUIRE_THAT(exact.intercept, WithinRel(3e3, 1e-12));

@@ -54,6 +54,8 @@ TEST_CASE("Failed runs: an absurd member diverges with a message; its neighbours
         run_unconfined_compression(soils, small_unconfined(), packings()));
   check(run_confined_compression(sound, small_confined(), packings()),
         run_confined_compression(soils, small_confined(), packings()));
+  check(run_direct_tension(sound, small_tension(), packings()),
+        run_direct_tension(soils, small_tension(), packings()));
   DirectShearConfig shear = small_shear();
   shear.normal_stress_Pa = {10e3, 40e3};
   const auto mixed = run_direct_shear(soils, shear, packings());
@@ -106,6 +108,8 @@ TEST_CASE("Failed runs: the stop flag ends every test at its next interval",
   for (const auto& results :
        {run_unconfined_compression(soils, small_unconfined(), packings(), options),
         run_direct_shear(soils, small_shear(), packings(), options),
+        run_direct_tension(soils, small_tension(), packings(), options),
+        run_interface_shear(soils, small_interface(), packings(), options),
         run_confined_compression(soils, small_confined(), packings(), options)})
     for (const ExperimentResult& r : results) {
       REQUIRE(r.status == RunStatus::stopped);

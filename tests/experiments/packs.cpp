@@ -19,10 +19,29 @@ struct NamedTest {
 };
 
 /// Every test, small and fast; the shear test at two of its normal stresses.
+/// Every test, small and fast: compression at two rates, shear tests at two of their normal stresses
+/// and one of them on a cut block, the oedometer with both loops.
 std::vector<NamedTest> small_tests() {
   return {{"unconfined compression",
            [](auto members, const RunOptions& o) {
-             return run_unconfined_compression(members, small_unconfined(), packings(), o);
+             UnconfinedCompressionConfig c = small_unconfined();
+             c.fast_rate_ratio = 3;
+             return run_unconfined_compression(members, c, packings(), o);
+           }},
+          {"direct tension",
+           [](auto members, const RunOptions& o) {
+             return run_direct_tension(members, small_tension(), packings(), o);
+           }},
+          {"interface shear",
+           [](auto members, const RunOptions& o) {
+             return run_interface_shear(members, small_interface(), packings(), o);
+           }},
+          {"direct shear of a cut block",
+           [](auto members, const RunOptions& o) {
+             DirectShearConfig c = small_shear();
+             c.normal_stress_Pa = {20e3};
+             c.cut_angle_rad = 0.5;
+             return run_direct_shear(members, c, packings(), o);
            }},
           {"direct shear",
            [](auto members, const RunOptions& o) {
@@ -40,7 +59,9 @@ std::vector<NamedTest> small_tests() {
              return run_drained_triaxial(members, c, packings(), o);
            }},
           {"confined compression", [](auto members, const RunOptions& o) {
-             return run_confined_compression(members, small_confined(), packings(), o);
+             ConfinedCompressionConfig c = small_confined();
+             c.second_load_to_stress_Pa = 150e3;
+             return run_confined_compression(members, c, packings(), o);
            }}};
 }
 

@@ -7,6 +7,8 @@
 
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
+#include "experiments/direct_tension.hpp"
+#include "experiments/interface_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
 
 namespace tilth::testing {
@@ -27,6 +29,17 @@ inline ConfinedCompressionConfig small_confined(double speed = 1.6e-3) {
 
 inline DirectShearConfig small_shear(double speed = 1.6e-3) {
   return {.num_particles = 150, .shear_speed_over_wave_speed = speed, .max_shear_strain = 0.03};
+}
+
+inline DirectTensionConfig small_tension(double speed = 2e-4) {
+  return {.num_particles = 150, .pull_speed_over_wave_speed = speed};
+}
+
+inline InterfaceShearConfig small_interface(double speed = 8e-4) {
+  return {.num_particles = 150,
+          .normal_stress_Pa = {10e3, 40e3},
+          .slide_speed_over_wave_speed = speed,
+          .max_slide_over_length = 0.02};
 }
 
 /// A bonded soil whose bonds cannot break.
