@@ -50,25 +50,18 @@ double spring_energy_J(const LaneLaw& law, double stiffness_factor, double overl
 
 }  // namespace
 
-double kinetic_energy_J(const Model& model, const State& state, int lane) {
-  double sum_J = 0.0;
-  for (int i = 0; i < model.num_particles(); ++i) {
-    const double m = model.mass_kg[as_size(i)];
-    const double r = model.radius_m[as_size(i)];
-    sum_J += 0.5 * m * state.velocity_m_per_s(i, lane).squaredNorm() +
-             0.2 * m * r * r * state.angular_velocity_rad_per_s(i, lane).squaredNorm();
-  }
-  return sum_J;
-}
-
 Energy energy(const Model& model, const State& state, const Workspace& workspace, int lane_id) {
   Energy e;
   const std::size_t lane = as_size(lane_id);
   const std::size_t lanes = as_size(state.num_lanes);
   const LaneLaw& law = model.lanes[lane];
-  e.kinetic_J = kinetic_energy_J(model, state, lane_id);
   for (int i = 0; i < model.num_particles(); ++i) {
-    e.gravity_J -= model.mass_kg[as_size(i)] * model.gravity_m_per_s2.dot(state.position_m(i, lane_id));
+    const double m = model.mass_kg[as_size(i)];
+    const double r = model.radius_m[as_size(i)];
+    const double inertia = 0.4 * m * r * r;
+    e.kinetic_J += 0.5 * m * state.velocity_m_per_s(i, lane_id).squaredNorm() +
+                   0.5 * inertia * state.angular_velocity_rad_per_s(i, lane_id).squaredNorm();
+    e.gravity_J -= m * model.gravity_m_per_s2.dot(state.position_m(i, lane_id));
     for (auto p = as_size(state.contacts.row_begin[as_size(i)]);
          p < as_size(state.contacts.row_begin[as_size(i) + 1]); ++p) {
       const PairRecord& pair = workspace.pairs[p];

@@ -16,9 +16,6 @@ struct Energy {
   double total_J() const { return kinetic_J + contacts_J + walls_J + bonds_J + gravity_J; }
 };
 
-/// Translation and rotation; grains that Model holds fixed have none.
-double kinetic_energy_J(const Model& model, const State& state, int lane = 0);
-
 /// Needs a workspace that belongs to the state (after a step).
 Energy energy(const Model& model, const State& state, const Workspace& workspace, int lane = 0);
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 list(APPEND TILTH_TEST_SOURCES
+  experiments/angle_of_repose.cpp
   experiments/confined_compression.cpp
   experiments/curve_features.cpp
   experiments/direct_shear.cpp
   experiments/failed_runs.cpp
   experiments/field.cpp
   experiments/packs.cpp
+  experiments/settled_bed.cpp
   experiments/unconfined_compression.cpp)
