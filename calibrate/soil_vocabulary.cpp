@@ -31,6 +31,7 @@ SoilVocabulary built_in() {
       {"confined_compression", "reload_modulus_Pa", 1e5, 1e9, unload_stresses},
       {"confined_compression", "radial_stress_ratio", 0.05, 2.0, load_stresses},
       {"confined_compression", "compression_strain", 1e-4, 0.6, load_stresses},
+      {"angle_of_repose", "repose_angle_rad", 0.1, 1.4, none},
   };
   words.parameters = {
       {"bond_modulus_Pa", 1.0, 1e12},

@@ -29,13 +29,12 @@ double floor_length_m(const AngleOfReposeConfig& c) {
   return c.floor_over_column_length * c.column_length_m;
 }
 
-/// A floor of touching grains of the mean radius on a square grid, their tops at z = 0, then the column.
+/// A floor of touching, fixed grains of the mean radius on a square grid, their tops at z = 0, then the column.
 Packing on_rough_floor(const Packing& column, const AngleOfReposeConfig& c, int& num_floor_grains) {
   const double r = column.mean_radius_m;
-  const auto rows = [r](double length_m) {
-    return std::max(1, static_cast<int>(std::floor(length_m / (2 * r))));
-  };
-  const int nx = rows(floor_length_m(c)) + 1;
+  // Across the slab they overlap rather than leave a gap that a grain could fall through.
+  const auto rows = [r](double length_m) { return static_cast<int>(std::ceil(length_m / (2 * r))); };
+  const int nx = rows(floor_length_m(c));
   const int ny = rows(c.slab_thickness_m);
   Packing all;
   all.mean_radius_m = r;

@@ -46,6 +46,12 @@ void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {
   c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(AngleOfReposeConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  // 0.45, 0.3 and 0.11 of sqrt(g d)
+  c.wall_speed_over_fall_speed = 375 * size_of(fidelity).speed_over_wave_speed;
+}
+
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
                                   std::span<const SoilMaterial> m, PackingStore& p,
                                   const RunOptions& o) {
@@ -60,17 +66,23 @@ std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
                                   const RunOptions& o) {
   return run_confined_compression(m, c, p, o);
 }
+std::vector<ExperimentResult> run(const AngleOfReposeConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_angle_of_repose(m, c, p, o);
+}
 
 const std::vector<TestConfig>& all_tests() {
   static const std::vector<TestConfig> tests = {
-      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{}};
+      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
+      AngleOfReposeConfig{}};
   return tests;
 }
 
 }  // namespace
 
 const char* test_id(const TestConfig& config) {
-  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression"};
+  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
+                                 "angle_of_repose"};
   return ids[config.index()];
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibrate/soil_data.hpp"
+#include "experiments/angle_of_repose.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
@@ -16,7 +17,8 @@
 namespace tilth {
 
 using TestConfig =
-    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig>;
+    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
+                 AngleOfReposeConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -25,7 +27,7 @@ enum class Fidelity {
   confirm   ///< about 1500 spheres, slow
 };
 
-/// "unconfined_compression", "direct_shear", "confined_compression".
+/// "unconfined_compression", "direct_shear", "confined_compression", "angle_of_repose".
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests
