@@ -52,6 +52,7 @@ SoilVocabulary built_in() {
       {"interface_shear", "adhesion_Pa", 1.0, 1e5, three_normal_stresses},
       {"interface_shear", "peak_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
       {"interface_shear", "residual_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
+      {"angle_of_repose", "repose_angle_rad", 0.1, 1.4, none},
   };
   words.parameters = {
       {"bond_modulus_Pa", 0.0, 1e12},
@@ -65,6 +66,7 @@ SoilVocabulary built_in() {
       {"stiffness_ratio", 0.1, 100.0},
       {"friction", 0.0, 5.0},
       {"wall_friction", 0.0, 5.0},
+      {"rolling_friction", 0.0, 2.0},
       {"local_damping", 0.0, 0.95},
       {"grain_density_kg_per_m3", 500.0, 1e4},
   };

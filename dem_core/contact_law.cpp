@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "dem_core/bond_kernel.hpp"
+#include "dem_core/rolling_kernel.hpp"
 
 namespace tilth {
 namespace {
@@ -59,6 +59,22 @@ ContactResponse contact_law(const ContactConstants& constants, const ContactMoti
       lanes::contact_force<1>(law, law[lanes::law_friction], {motion.overlap_m > 0}, {motion.overlap_m},
                               {constants.normal_stiffness_N_per_m}, {1.0}, e, spring.data());
   return {f.normal.v, unpack(f.tangential), Vec3(spring[0], spring[1], spring[2])};
+}
+
+RollingResponse rolling_law(const RollingConstants& constants, const RollingMotion& motion,
+                            const Vec3& angle_rad) {
+  LawBlock block{};
+  block[lanes::law_rolling_friction] = constants.rolling_friction;
+  block[lanes::law_dt] = constants.dt_s;
+  const Pack3<1> a = pack(motion.spin_a_rad_per_s);
+  const Pack3<1> b = pack(motion.spin_b_rad_per_s);
+  std::array<double, 3> angle = {angle_rad.x(), angle_rad.y(), angle_rad.z()};
+  const Pack3<1> moment = lanes::rolling_moment<1>(
+      lanes::Law<1>(block.data()), {true},
+      {{constants.rolling_radius_m}, {constants.shear_stiffness_N_per_m}, {motion.normal_N},
+       pack(motion.normal), b - a, a + b},
+      angle.data());
+  return {unpack(moment), Vec3(angle[0], angle[1], angle[2])};
 }
 
 BondResponse bond_force_law(const BondLaw& constants, const BondGeometry& geometry, double dt_s,

@@ -53,6 +53,38 @@ struct ContactResponse {
 ContactResponse contact_law(const ContactConstants& constants, const ContactMotion& motion,
                             const Vec3& spring_m);
 
+/// Constants of the rolling spring of one contact, already combined from LaneLaw and the two bodies.
+struct RollingConstants {
+  double shear_stiffness_N_per_m = 0.0;  ///< k_s of the contact, > 0
+  double rolling_radius_m = 0.0;  ///< Rbar = r_a r_b / (r_a + r_b); on a wall the grain's own, > 0
+  double rolling_friction = 0.0;  ///< mu_r >= 0
+  double dt_s = 0.0;              ///< step over which the spring is wound up
+};
+
+struct RollingMotion {
+  Vec3 normal = Vec3::UnitZ();  ///< unit vector from a to b
+  double normal_N = 0.0;        ///< F_n of the contact, positive pushes apart
+  Vec3 spin_a_rad_per_s = Vec3::Zero();
+  Vec3 spin_b_rad_per_s = Vec3::Zero();
+};
+
+struct RollingResponse {
+  Vec3 moment_on_a_N_m = Vec3::Zero();  ///< b receives the opposite
+  Vec3 angle_rad = Vec3::Zero();        ///< to carry into the next step
+};
+
+/// One step of the elastic-plastic rolling spring of an unbonded contact.
+///
+///   angle <- C angle + dt P (w_b - w_a),  P = 1 - n n^T, C as in bond.md, 5   (rolling.md, 1)
+///   M = k_r angle on a,  k_r = k_s Rbar^2                                      (rolling.md, 2)
+///   |M| > M_max = mu_r Rbar max(F_n, 0):  angle <- angle M_max / |M|, M anew   (rolling.md, 3)
+///
+/// Twist about the normal is not resisted, and there is no rolling dashpot. mu_r = 0 gives zero.
+/// @source type C of Ai, Chen, Rotter & Ooi, Powder Technology 206 (2011) 269-282, without its
+///         viscous part; k_r = k_s Rbar^2 as in PFC's rolling resistance linear model
+RollingResponse rolling_law(const RollingConstants& constants, const RollingMotion& motion,
+                            const Vec3& angle_rad);
+
 /// Relative motion of two bonded bodies a and b.
 struct BondMotion {
   Vec3 normal = Vec3::UnitZ();                   ///< unit vector from a to b

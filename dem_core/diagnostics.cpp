@@ -3,6 +3,7 @@
 #include "dem_core/diagnostics.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "dem_core/wall_geometry.hpp"
 
@@ -33,11 +34,18 @@ double bond_energy_J(const LaneLaw& law, const BondGeometry& g, double distance_
                               law.bond.twisting_scale * g.twisting_factor));
 }
 
+/// Rolling angle of contact k; zero where no lane has rolling friction.
+Vec3 rolling_angle_rad(const AlignedDoubles& rolling_rad, std::size_t k, std::size_t lanes,
+                       std::size_t lane) {
+  return rolling_rad.empty() ? Vec3::Zero() : stored_vector(rolling_rad, k * 3, lanes, lane);
+}
+
+/// The tangential and the rolling spring have one stiffness k_s per arc length: `sliding_and_rolling_m2`
+/// is |s|^2 + Rbar^2 |angle|^2.
 double spring_energy_J(const LaneLaw& law, double stiffness_factor, double overlap_m,
-                       const Vec3& spring_m) {
+                       double sliding_and_rolling_m2) {
   const double kn = law.contact_stiffness * stiffness_factor;
-  return 0.5 * kn * (overlap_m * overlap_m +
-                     law.shear_stiffness_ratio * spring_m.squaredNorm());
+  return 0.5 * kn * (overlap_m * overlap_m + law.shear_stiffness_ratio * sliding_and_rolling_m2);
 }
 
 }  // namespace
@@ -64,8 +72,11 @@ Energy energy(const Model& model, const State& state, const Workspace& workspace
         e.bonds_J += bond_energy_J(law, model.bonds[as_size(pair.bond)], distance_m, state.bonds,
                                    as_size(pair.bond), lanes, lane);
       if (distance_m < pair.reference_m && (!held || model.contact_beside_bond))
-        e.contacts_J += spring_energy_J(law, pair.stiffness_factor, pair.reference_m - distance_m,
-                                        stored_vector(state.contacts.spring_m, p * 3, lanes, lane));
+        e.contacts_J += spring_energy_J(
+            law, pair.stiffness_factor, pair.reference_m - distance_m,
+            stored_vector(state.contacts.spring_m, p * 3, lanes, lane).squaredNorm() +
+                std::pow(rolling_radius_m(model, i, pair.j), 2) *
+                    rolling_angle_rad(state.contacts.rolling_rad, p, lanes, lane).squaredNorm());
     }
   }
   for (int w = 0; w < static_cast<int>(model.walls.size()); ++w)
@@ -76,8 +87,11 @@ Energy energy(const Model& model, const State& state, const Workspace& workspace
       const double overlap_m =
           record.reference_m - wall_distance_m(model, state, w, x, lane_id);
       if (overlap_m > 0 || record.glued)
-        e.walls_J += spring_energy_J(law, record.stiffness_factor, overlap_m,
-                                     stored_vector(state.wall_contacts.spring_m, c * 3, lanes, lane));
+        e.walls_J += spring_energy_J(
+            law, record.stiffness_factor, overlap_m,
+            stored_vector(state.wall_contacts.spring_m, c * 3, lanes, lane).squaredNorm() +
+                std::pow(model.radius_m[as_size(state.wall_contacts.particle[c])], 2) *
+                    rolling_angle_rad(state.wall_contacts.rolling_rad, c, lanes, lane).squaredNorm());
     }
   return e;
 }

@@ -6,6 +6,7 @@
 #include "dem_core/bond_kernel.hpp"
 #include "dem_core/contact_kernel.hpp"
 #include "dem_core/records.hpp"
+#include "dem_core/rolling_kernel.hpp"
 
 namespace tilth::lanes {
 
@@ -25,11 +26,18 @@ TILTH_INLINE void clear_spring(double* spring_m, std::uint8_t& touching) {
   touching = 0;
 }
 
-/// Force on j and the moments of one listed pair, added to both bodies. HasBonds = false leaves the
-/// bond out of the code; the bits are those of a model without bonds either way.
-template <int W, bool HasBonds>
+/// Rbar of two grains.
+TILTH_INLINE double rolling_radius_m(const StepView& view, std::int64_t i, std::int64_t j) {
+  return view.radius_m[i] * view.radius_m[j] / (view.radius_m[i] + view.radius_m[j]);
+}
+
+/// Force on j and the moments of one listed pair (i, j), added to both bodies. HasBonds = false leaves
+/// the bond and HasRolling = false the rolling spring out of the code; the bits are those of a model
+/// without bonds, and of lanes without rolling friction, either way.
+template <int W, bool HasBonds, bool HasRolling>
 TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
-                             Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t p) {
+                             Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t i,
+                             std::int64_t p) {
   using P = Pack<W>;
   const PairRecord& pair = view.pairs[p];
   const std::int64_t j = pair.j;
@@ -39,15 +47,18 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   const bool bonded = HasBonds && pair.bond >= 0;
   const P reference = P::all(pair.reference_m);
   Mask<W> touching = squared < reference * reference;
+  Mask<W> unbonded = touching;
   double* bond = nullptr;
   bool any_bond = false;
   if (bonded) {
     bond = view.bonds + static_cast<std::int64_t>(pair.bond) * 8 * W;
     const Mask<W> holds = P::load(bond + 7 * W) > P::all(0.5);
     any_bond = any(holds);
+    unbonded = unbonded & !holds;
     if (!view.contact_beside_bond) touching = touching & !holds;
   }
   if (!any_bond && !any(touching)) {
+    if (HasRolling && view.touching[p]) Pack3<W>::zero().store(view.pair_rolling_rad + p * 3 * W);
     clear_spring<W>(spring_m, view.touching[p]);
     return;
   }
@@ -76,6 +87,12 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
     push = f.normal;
     tangential = f.tangential;
     view.touching[p] = 1;
+    if (HasRolling)
+      moment = rolling_moment<W>(law, unbonded,
+                                 {P::all(rolling_radius_m(view, i, j)),
+                                  stiffness * law[law_shear_ratio], f.normal, e.normal,
+                                  spin_b - a.spin, a.spin + spin_b},
+                                 view.pair_rolling_rad + p * 3 * W);
   } else {
     clear_spring<W>(spring_m, view.touching[p]);
   }
@@ -84,7 +101,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
                                       spin_b - a.spin, a.spin + spin_b, bond, view.num_broken);
     push = push + f.normal;
     tangential = tangential + f.tangential;
-    moment = f.moment;
+    moment = HasRolling ? moment + f.moment : f.moment;
     if (!view.contact_beside_bond && any(f.breaks)) {
       // The contact takes over from its bond with the shear force it finds; Coulomb cuts it back.
       const P shear_stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor) *
@@ -103,7 +120,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   (Pack3<W>::load(force_b + 3 * W) + (arm_b * turning - moment)).store(force_b + 3 * W);
 }
 
-template <int W, bool HasBonds>
+template <int W, bool HasBonds, bool HasRolling>
 TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law) {
   for (std::int64_t i = 0; i < view.num_particles; ++i) {
     const std::int64_t begin = view.row_begin[i];
@@ -113,8 +130,8 @@ TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law
     double* store = view.force + i * 6 * W;
     Pack3<W> force = Pack3<W>::load(store);
     Pack3<W> torque = Pack3<W>::load(store + 3 * W);
-    for (std::int64_t p = begin; p < end; ++p) 
-      pair_force<W, HasBonds>(view, law, a, force, torque, p);
+    for (std::int64_t p = begin; p < end; ++p)
+      pair_force<W, HasBonds, HasRolling>(view, law, a, force, torque, i, p);
     force.store(store);
     torque.store(store + 3 * W);
   }

@@ -53,12 +53,18 @@ TILTH_INLINE void integrate(const StepView& view, const Law<W>& law) {
   fastest.store(view.max_speed2);
 }
 
+template <int W, bool HasRolling>
+void accumulate_forces(const StepView& view, const Law<W>& law) {
+  if (view.num_bonds > 0) accumulate_pair_forces<W, true, HasRolling>(view, law);
+  else accumulate_pair_forces<W, false, HasRolling>(view, law);
+  accumulate_wall_forces<W, HasRolling>(view, law);
+}
+
 template <int W>
 void step_lanes(const StepView& view) {
   const Law<W> law(view.law);
-  if (view.num_bonds > 0) accumulate_pair_forces<W, true>(view, law);
-  else accumulate_pair_forces<W, false>(view, law);
-  accumulate_wall_forces(view, law);
+  if (view.has_rolling) accumulate_forces<W, true>(view, law);
+  else accumulate_forces<W, false>(view, law);
   integrate(view, law);
 }
 

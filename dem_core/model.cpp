@@ -23,6 +23,8 @@ void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& 
   require(finite_from_zero(law.friction), "friction", law.friction, "finite and >= 0");
   require(finite_from_zero(law.wall_friction), "wall_friction", law.wall_friction,
           "finite and >= 0");
+  require(finite_from_zero(law.rolling_friction), "rolling_friction", law.rolling_friction,
+          "finite and >= 0");
   require(finite_from_zero(law.normal_damping), "normal_damping", law.normal_damping,
           "finite and >= 0");
   require(finite_from_zero(law.tangential_damping), "tangential_damping", law.tangential_damping,
@@ -45,6 +47,9 @@ std::vector<std::string> problems(const Model& model) {
   if (lanes != 1 && lanes != 4 && lanes != 8)
     found.push_back(fmt::format("num_lanes = {}: must be 1, 4 or 8", lanes));
   for (std::size_t k = 0; k < model.lanes.size(); ++k) check_lane(model.lanes[k], k, found);
+  if (model.num_fixed < 0 || model.num_fixed > model.num_particles())
+    found.push_back(fmt::format("num_fixed = {}: must be in [0, {}]", model.num_fixed,
+                                model.num_particles()));
   if (model.mass_kg.size() != model.radius_m.size())
     found.push_back(fmt::format("{} masses for {} radii", model.mass_kg.size(),
                                 model.radius_m.size()));
@@ -74,6 +79,12 @@ std::vector<std::string> problems(const Model& model) {
   if (out_of_order(model.references))
     found.push_back("references are not sorted by (i, j), each pair once");
   return found;
+}
+
+double rolling_radius_m(const Model& model, int i, int j) {
+  const double ri = model.radius_m[static_cast<std::size_t>(i)];
+  const double rj = model.radius_m[static_cast<std::size_t>(j)];
+  return ri * rj / (ri + rj);
 }
 
 std::vector<double> sphere_masses_kg(const std::vector<double>& radius_m,

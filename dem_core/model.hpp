@@ -33,6 +33,7 @@ struct LaneLaw {
   double shear_stiffness_ratio = 0.5;  ///< k_s / k_n, > 0
   double friction = 0.5;               ///< Coulomb coefficient between grains, >= 0
   double wall_friction = 0.0;          ///< Coulomb coefficient on walls, >= 0; see friction_scale
+  double rolling_friction = 0.0;       ///< mu_r of unbonded contacts and of walls, >= 0 (rolling.md)
   double normal_damping = 0.0;         ///< see DampingKind, >= 0
   double tangential_damping = 0.0;     ///< see DampingKind (with m_eff k_n), >= 0
   double local_damping = 0.0;          ///< alpha in F - alpha |F| sign(v), in [0, 1)
@@ -84,6 +85,8 @@ struct WallReference {
 struct Model {
   std::vector<double> radius_m;
   std::vector<double> mass_kg;
+  /// The first grains keep the velocity they are given (0 unless set) whatever pushes them: a rough base.
+  int num_fixed = 0;
   std::vector<LaneLaw> lanes;  ///< 1, 4 or 8 of them
   StiffnessKind stiffness_kind = StiffnessKind::modulus;
   DampingKind damping_kind = DampingKind::restitution;
@@ -101,6 +104,9 @@ struct Model {
   int num_particles() const { return static_cast<int>(radius_m.size()); }
   int num_lanes() const { return static_cast<int>(lanes.size()); }
 };
+
+/// Effective radius of a rolling contact, Rbar = r_i r_j / (r_i + r_j); the grain's own on a wall.
+double rolling_radius_m(const Model& model, int i, int j);
 
 /// Everything wrong with a model, one sentence each; empty means usable.
 std::vector<std::string> problems(const Model& model);

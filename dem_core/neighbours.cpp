@@ -122,6 +122,7 @@ struct Rows {
     const std::vector<Vec3> x = lane_positions(state, model.num_particles(), lane);
     const Grid grid(x, 2 * largest_radius_m(model) + skin_m);
     grid.for_each_candidate(x, [&](Index i, Index j) {
+      if (j < model.num_fixed) return;  // i < j: neither moves
       const double reach = model.radius_m[as_size(i)] + model.radius_m[as_size(j)] + skin_m;
       if ((x[as_size(j)] - x[as_size(i)]).squaredNorm() < reach * reach)
         partners[as_size(i)].push_back(j);
@@ -147,8 +148,10 @@ PairRecord pair_record(const Model& model, Index i, Index j) {
           .arm_offset_m = 0.5 * (ri - rj)};
 }
 
+/// Takes the vector of contact k over as that of contact m; nothing where there is no such memory.
 void copy_spring(const AlignedDoubles& from, std::size_t k, AlignedDoubles& to, std::size_t m,
                  std::size_t lanes) {
+  if (from.empty() || to.empty()) return;
   std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(k * 3 * lanes), 3 * lanes,
               to.begin() + static_cast<std::ptrdiff_t>(m * 3 * lanes));
 }
@@ -164,6 +167,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
   fresh.partner.reserve(total);
   fresh.touching.assign(total, 0);
   fresh.spring_m.assign(total * 3 * lanes, 0.0);
+  if (workspace.has_rolling) fresh.rolling_rad.assign(total * 3 * lanes, 0.0);
   workspace.pairs.clear();
   workspace.pairs.reserve(total);
   const ContactMemory& old = state.contacts;
@@ -188,6 +192,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
       while (k < k_end && old.partner[k] < j) ++k;
       if (k < k_end && old.partner[k] == j) {
         copy_spring(old.spring_m, k, fresh.spring_m, fresh.partner.size(), lanes);
+        copy_spring(old.rolling_rad, k, fresh.rolling_rad, fresh.partner.size(), lanes);
         fresh.touching[fresh.partner.size()] = old.touching[k];
       }
       fresh.partner.push_back(j);
@@ -240,9 +245,12 @@ void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
       if (!glued && !near_wall(model, state, workspace, wall, i)) continue;
       fresh.particle.push_back(i);
       fresh.spring_m.resize(fresh.particle.size() * 3 * lanes, 0.0);
+      if (workspace.has_rolling) fresh.rolling_rad.resize(fresh.spring_m.size(), 0.0);
       while (k < k_end && old.particle[k] < i) ++k;
-      if (k < k_end && old.particle[k] == i)
+      if (k < k_end && old.particle[k] == i) {
         copy_spring(old.spring_m, k, fresh.spring_m, fresh.particle.size() - 1, lanes);
+        copy_spring(old.rolling_rad, k, fresh.rolling_rad, fresh.particle.size() - 1, lanes);
+      }
       workspace.wall_pairs.push_back(wall_record(model, i, reference));
     }
     fresh.row_begin[as_size(wall) + 1] = static_cast<Index>(fresh.particle.size());

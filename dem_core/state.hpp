@@ -34,6 +34,8 @@ struct ContactMemory {
   std::vector<std::int32_t> partner;
   std::vector<std::uint8_t> touching;  ///< 1 if any lane touched in the last step
   AlignedDoubles spring_m;             ///< [pair][3][W]: tangential displacement of j against i
+  /// [pair][3][W]: rolling angle of j against i; empty where no lane has rolling friction.
+  AlignedDoubles rolling_rad;
 };
 
 /// Wall contacts near enough to matter, sorted by wall, then particle.
@@ -41,6 +43,7 @@ struct WallContactMemory {
   std::vector<std::int32_t> row_begin;  ///< num_walls + 1
   std::vector<std::int32_t> particle;
   AlignedDoubles spring_m;  ///< [contact][3][W]: tangential displacement of the wall's grain
+  AlignedDoubles rolling_rad;  ///< [contact][3][W]: rolling angle of the grain, or empty likewise
 };
 
 struct State {
@@ -97,6 +100,7 @@ struct State {
 /// Buffers rebuilt from Model and State whenever needed; see step().
 struct Workspace {
   bool prepared = false;
+  bool has_rolling = false;  ///< some lane has rolling friction
   std::vector<PairRecord> pairs;
   std::vector<WallRecord> wall_pairs;
   AlignedDoubles force;                ///< [particle][6][W]: force [N], torque [N m]

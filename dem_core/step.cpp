@@ -29,6 +29,7 @@ void write_law(const Model& model, const State& state, Workspace& workspace) {
     put(law_inverse_shear_ratio, 1 / law.shear_stiffness_ratio);
     put(law_friction, law.friction);
     put(law_wall_friction, law.wall_friction);
+    put(law_rolling_friction, law.rolling_friction);
     put(law_normal_damping, law.normal_damping * damping_scale);
     put(law_tangential_damping, law.tangential_damping * damping_scale);
     put(law_local_damping, law.local_damping);
@@ -58,10 +59,16 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
   workspace.inverse_mass_per_kg.resize(n);
   workspace.inverse_inertia_per_kg_m2.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
+    if (i < as_size(model.num_fixed)) {  // no force or weight moves it
+      workspace.inverse_mass_per_kg[i] = workspace.inverse_inertia_per_kg_m2[i] = 0.0;
+      continue;
+    }
     workspace.inverse_mass_per_kg[i] = 1 / model.mass_kg[i];
     workspace.inverse_inertia_per_kg_m2[i] =
         1 / (0.4 * model.mass_kg[i] * model.radius_m[i] * model.radius_m[i]);
   }
+  workspace.has_rolling = std::ranges::any_of(
+      model.lanes, [](const LaneLaw& law) { return law.rolling_friction > 0; });
   write_law(model, state, workspace);
   rebuild_neighbours(model, state, workspace);
   workspace.prepared = true;
@@ -124,6 +131,7 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.num_walls = static_cast<int>(model.walls.size());
   v.num_bonds = static_cast<int>(model.bonds.size());
   v.contact_beside_bond = model.contact_beside_bond;
+  v.has_rolling = workspace.has_rolling;
   v.law = workspace.law.data();
   v.motion = state.motion.data();
   v.force = workspace.force.data();
@@ -136,12 +144,14 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.pairs = workspace.pairs.data();
   v.touching = state.contacts.touching.data();
   v.pair_spring_m = state.contacts.spring_m.data();
+  v.pair_rolling_rad = state.contacts.rolling_rad.data();
   v.bond_geometry = model.bonds.data();
   v.bonds = state.bonds.data();
   v.wall_row_begin = state.wall_contacts.row_begin.data();
   v.wall_particle = state.wall_contacts.particle.data();
   v.wall_pairs = workspace.wall_pairs.data();
   v.wall_spring_m = state.wall_contacts.spring_m.data();
+  v.wall_rolling_rad = state.wall_contacts.rolling_rad.data();
   v.wall_views = walls.data();
   v.walls = state.walls.data();
   v.wall_velocity = wall_velocity;

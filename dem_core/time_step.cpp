@@ -24,7 +24,7 @@ struct PairStiffness {
   double normal = 0.0, shear = 0.0, bending = 0.0, twisting = 0.0;
 };
 
-/// What one contact adds: springs, and dashpots as if they were springs.
+/// What one contact adds: springs (the rolling one bends), and dashpots as if they were springs.
 struct ContactMatrices {
   PairStiffness springs, dashpots;
 };
@@ -47,11 +47,14 @@ Matrix6 one_sided(const PairStiffness& k, const Vec3& n, double arm_m) {
 }
 
 ContactMatrices contact_matrices(const Model& model, const LaneLaw& law, double factor,
-                                 double effective_mass_kg) {
+                                 double effective_mass_kg, double effective_radius_m) {
   const double kn = law.contact_stiffness * factor;
   const double c = model.damping_kind == DampingKind::rate ? effective_mass_kg
                                                            : std::sqrt(effective_mass_kg * kn);
-  return {.springs = {.normal = kn, .shear = kn * law.shear_stiffness_ratio},
+  const double ks = kn * law.shear_stiffness_ratio;
+  const double rolling =
+      law.rolling_friction > 0 ? ks * effective_radius_m * effective_radius_m : 0.0;
+  return {.springs = {.normal = kn, .shear = ks, .bending = rolling},
           .dashpots = {.normal = c * law.normal_damping, .shear = c * law.tangential_damping}};
 }
 
@@ -64,7 +67,7 @@ ContactMatrices pair_matrices(const Model& model, const LaneLaw& law, int i, int
   const double factor = model.stiffness_kind == StiffnessKind::modulus
                             ? std::numbers::pi * r * r / (ri + rj)
                             : 1.0;
-  return contact_matrices(model, law, factor, mi * mj / (mi + mj));
+  return contact_matrices(model, law, factor, mi * mj / (mi + mj), rolling_radius_m(model, i, j));
 }
 
 void add_pair(const Model& model, const State& state, std::vector<Load>& sum, int i, int j,
@@ -83,7 +86,7 @@ void add_walls(const Model& model, const State& state, std::vector<Load>& sum, i
   const Vec3 x = state.position_m(i, lane);
   const double factor = model.stiffness_kind == StiffnessKind::modulus ? std::numbers::pi * r : 1.0;
   const ContactMatrices k =
-      contact_matrices(model, model.lanes[as_size(lane)], factor, model.mass_kg[as_size(i)]);
+      contact_matrices(model, model.lanes[as_size(lane)], factor, model.mass_kg[as_size(i)], r);
   const auto add = [&](int w, double distance) {
     const Vec3 n = wall_normal(model, state, w, x, lane);
     sum[as_size(i)][0] += one_sided(k.springs, n, distance);
@@ -128,7 +131,7 @@ double stable_time_step_s(const Model& model, const State& state, int lane) {
               law.bond.twisting_scale * b.twisting_factor},
              0, lane);
   double dt_s = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < model.num_particles(); ++i) {
+  for (int i = model.num_fixed; i < model.num_particles(); ++i) {
     add_walls(model, state, sum, i, lane);
     const double m = model.mass_kg[as_size(i)];
     const double r = model.radius_m[as_size(i)];

@@ -23,6 +23,7 @@ enum LawRow : int {
   law_inverse_shear_ratio,
   law_friction,
   law_wall_friction,
+  law_rolling_friction,
   law_normal_damping,
   law_tangential_damping,
   law_local_damping,
@@ -58,6 +59,7 @@ struct StepView {
   int num_walls;
   int num_bonds;
   bool contact_beside_bond;
+  bool has_rolling;  ///< some lane has rolling friction; else the rolling springs are null
   const double* law;
   double* motion;
   double* force;
@@ -70,12 +72,14 @@ struct StepView {
   const PairRecord* pairs;
   std::uint8_t* touching;
   double* pair_spring_m;
+  double* pair_rolling_rad;
   const BondGeometry* bond_geometry;
   double* bonds;
   const std::int32_t* wall_row_begin;
   const std::int32_t* wall_particle;
   const WallRecord* wall_pairs;
   double* wall_spring_m;
+  double* wall_rolling_rad;
   const WallView* wall_views;
   const double* walls;          ///< [wall][4][W]
   const double* wall_velocity;  ///< [wall][4][W]: velocity (3), growth of the radius

@@ -59,7 +59,7 @@ TILTH_INLINE WallMeeting<W> meet_wall(const WallView& wall, const double* place,
   return {select(at_edge, edge_distance, along), select(at_edge, from_edge, direction)};
 }
 
-template <int W>
+template <int W, bool HasRolling>
 TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall, std::int64_t c) {
   using P = Pack<W>;
   const std::int64_t i = view.wall_particle[c];
@@ -74,6 +74,7 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const Mask<W> touching = meeting.distance < reference;
   if (!record.glued && !any(touching)) {
     Pack3<W>::zero().store(spring_m);
+    if (HasRolling) Pack3<W>::zero().store(view.wall_rolling_rad + c * 3 * W);
     return;
   }
   Encounter<W> e;
@@ -99,22 +100,35 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const Pack3<W> on_grain = f.normal * e.normal - f.tangential;
   double* force = view.force + i * 6 * W;
   (Pack3<W>::load(force) + on_grain).store(force);
-  const Pack3<W> turning = meeting.distance * cross(e.normal, f.tangential);
+  Pack3<W> turning = meeting.distance * cross(e.normal, f.tangential);
+  Pack3<W> moment = Pack3<W>::zero();
+  if (HasRolling) {
+    // The grain is body b here, the wall at rest body a.
+    moment = rolling_moment<W>(law, touching,
+                               {P::all(view.radius_m[i]),
+                                law[law_contact_stiffness] * P::all(record.stiffness_factor) *
+                                    law[law_shear_ratio],
+                                f.normal, e.normal, spin, spin},
+                               view.wall_rolling_rad + c * 3 * W);
+    turning = turning - moment;
+  }
   (Pack3<W>::load(force + 3 * W) + turning).store(force + 3 * W);
   double* on_wall = view.wall_force + static_cast<std::int64_t>(wall) * 6 * W;
   (Pack3<W>::load(on_wall) - on_grain).store(on_wall);
   const Pack3<W> arm = position - meeting.distance * e.normal - Pack3<W>::load(place);
-  (Pack3<W>::load(on_wall + 3 * W) - cross(arm, on_grain)).store(on_wall + 3 * W);
+  Pack3<W> wall_torque = Pack3<W>::load(on_wall + 3 * W) - cross(arm, on_grain);
+  if (HasRolling) wall_torque = wall_torque + moment;
+  wall_torque.store(on_wall + 3 * W);
 }
 
-template <int W>
+template <int W, bool HasRolling>
 TILTH_INLINE void accumulate_wall_forces(const StepView& view, const Law<W>& law) {
   for (int wall = 0; wall < view.num_walls; ++wall) {
     double* on_wall = view.wall_force + static_cast<std::int64_t>(wall) * 6 * W;
     Pack3<W>::zero().store(on_wall);
     Pack3<W>::zero().store(on_wall + 3 * W);
     for (std::int64_t c = view.wall_row_begin[wall]; c < view.wall_row_begin[wall + 1]; ++c)
-      wall_contact(view, law, wall, c);
+      wall_contact<W, HasRolling>(view, law, wall, c);
   }
 }
 

@@ -163,6 +163,9 @@ std::vector<std::string> deck_lines(const ExportSource& source, const ExportSpec
   lines.push_back("");
   lines.push_back("The fitted set:");
   for (const ExportRow& row : export_rows(source)) lines.push_back("  " + row_sentence(row));
+  if (const double mu = source.set.material.rolling_friction; mu > 0)
+    lines.push_back(fmt::format("NOT in this deck: rolling_friction = {} (type C of Ai et al. 2011, "
+                                "k_r = k_s Rbar^2)", mu));
   lines.push_back("");
   lines.push_back("Specimen: " + s.packing);
   return lines;

@@ -64,6 +64,10 @@ void apply_fidelity(DirectTensionConfig& c, Fidelity fidelity) {
 void apply_fidelity(InterfaceShearConfig& c, Fidelity fidelity) {
   c.num_particles = size_of(fidelity).num_particles;
   c.slide_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+void apply_fidelity(AngleOfReposeConfig& c, Fidelity fidelity) {
+  c.num_particles = size_of(fidelity).num_particles;
+  // 0.45, 0.3 and 0.11 of sqrt(g d)
+  c.wall_speed_over_fall_speed = 375 * size_of(fidelity).speed_over_wave_speed;
 }
 
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
@@ -79,6 +83,10 @@ std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
                                   std::span<const SoilMaterial> m, PackingStore& p,
                                   const RunOptions& o) {
   return run_confined_compression(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const AngleOfReposeConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_angle_of_repose(m, c, p, o);
 }
 
 std::vector<ExperimentResult> run(const DrainedTriaxialConfig& c, std::span<const SoilMaterial> m,
@@ -110,6 +118,7 @@ const std::vector<TestConfig>& all_tests() {
       UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
       DrainedTriaxialConfig{}};
       DirectTensionConfig{}, InterfaceShearConfig{}};
+      AngleOfReposeConfig{}};
   return tests;
 }
 
@@ -119,6 +128,7 @@ const char* test_id(const TestConfig& config) {
   constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
                                  "drained_triaxial"};
                                  "direct_tension", "interface_shear"};
+                                 "angle_of_repose"};
   return ids[config.index()];
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibrate/soil_data.hpp"
+#include "experiments/angle_of_repose.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/drained_triaxial.hpp"
@@ -22,6 +23,7 @@ using TestConfig =
     std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
                  DrainedTriaxialConfig>;
                  DirectTensionConfig, InterfaceShearConfig>;
+                 AngleOfReposeConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -32,6 +34,7 @@ enum class Fidelity {
 
 /// "unconfined_compression", "direct_shear", ...
 /// "unconfined_compression", "direct_shear", "confined_compression", ...
+/// "unconfined_compression", "direct_shear", "confined_compression", "angle_of_repose".
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests

@@ -137,3 +137,27 @@ TEST_CASE("model: every bad number is named", "[dem_core][model]") {
              Contains("sorted"));
   CHECK_THAT(complaint([](Model& m) { m.walls[0].direction *= 2; }), Contains("wall 0"));
 }
+
+TEST_CASE("model: fixed grains carry others and keep their velocity", "[dem_core][model]") {
+  // Two overlapping fixed grains that move together at 0.1 m/s carry a third in the notch between them.
+  Scene scene;
+  scene.sphere({-0.5, 0, 0});
+  scene.sphere({0.5, 0, 0});
+  scene.sphere({0, 0, 1.93});
+  scene.model.gravity_m_per_s2 = {0, 0, -1};
+  scene.law().normal_damping = 0.5;
+  scene.model.num_fixed = 4;
+  CHECK(problems(scene.model).size() == 1);
+  scene.model.num_fixed = 2;
+  scene.begin();
+  for (int i = 0; i < 3; ++i) scene.state.set_velocity_m_per_s(i, {0.1, 0, 0});
+  scene.run(20000);
+  for (int i = 0; i < 2; ++i) {
+    CHECK(scene.state.velocity_m_per_s(i) == Vec3(0.1, 0, 0));
+    // 20 000 additions of dt v, 1e-16 each
+    CHECK_THAT(scene.state.position_m(i).x(), WithinAbs(i - 0.5 + 0.2, 1e-11));
+    CHECK(scene.state.position_m(i).z() == 0);
+  }
+  CHECK_THAT(scene.state.position_m(2).x(), WithinAbs(0.2, 1e-3));
+  CHECK_THAT(scene.state.position_m(2).z(), WithinAbs(std::sqrt(3.75), 1e-2));  // what it fell and rocks
+}

@@ -19,6 +19,7 @@ list(APPEND TILTH_TEST_SOURCES
   dem_core/neighbours.cpp
   dem_core/packing.cpp
   dem_core/packing_store.cpp
+  dem_core/rolling.cpp
   dem_core/settled_bed.cpp
   dem_core/snapshot.cpp
   dem_core/time_step.cpp

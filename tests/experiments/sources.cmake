@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 list(APPEND TILTH_TEST_SOURCES
+  experiments/angle_of_repose.cpp
   experiments/confined_compression.cpp
   experiments/curve_features.cpp
   experiments/cut_block.cpp
@@ -11,4 +12,5 @@ list(APPEND TILTH_TEST_SOURCES
   experiments/interface_shear.cpp
   experiments/packs.cpp
   experiments/triaxial_features.cpp
+  experiments/settled_bed.cpp
   experiments/unconfined_compression.cpp)

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+// What a virtual test costs: core-seconds per member at `search` size in packs of 1, 4 and 8 lanes, as a
+// Markdown table. From the repository's root, alone on the machine:
+//
+//     build/release/bin/laboratory_cost                  # every virtual test
+//     build/release/bin/laboratory_cost direct_shear ... # some of them
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "calibrate/cli/virtual_test.hpp"
+#include "dem_core/step.hpp"
+
+namespace {
+
+using namespace tilth;
+
+/// Soils as a fit sees them around its best point: moduli, strengths and friction up to 15 % apart.
+std::vector<SoilMaterial> members(int num_members) {
+  std::vector<SoilMaterial> soils;
+  for (int k = 0; k < num_members; ++k) {
+    const auto around_one = [k](int stride) { return 0.85 + 0.3 * (stride * k % 8) / 7.0; };
+    SoilMaterial m;
+    m.contact_modulus_Pa *= around_one(1);
+    m.bond.modulus_Pa *= around_one(1);
+    m.bond.tensile_strength_Pa *= around_one(3);
+    m.bond.cohesion_Pa *= around_one(3);
+    m.friction *= around_one(5);
+    soils.push_back(m);
+  }
+  return soils;
+}
+
+/// Core-seconds per member, "-" without such lanes, or how a member failed.
+std::string cost(const TestConfig& config, int num_lanes, PackingStore& packings) {
+  if (!lanes_supported(num_lanes)) return "-";
+  const std::vector<SoilMaterial> soils = members(num_lanes);
+  RunOptions options;
+  options.max_lanes = num_lanes;
+  const std::clock_t start = std::clock();
+  const std::vector<ExperimentResult> results =
+      run_virtual_test(config, soils, packings, options);
+  const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  for (const ExperimentResult& r : results)
+    if (r.status != RunStatus::completed) return fmt::format("{}: {}", name_of(r.status), r.message);
+  return fmt::format("{:.2f}", cpu_s / num_lanes);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> ids =
+      argc > 1 ? std::vector<std::string>(argv + 1, argv + argc) : virtual_test_ids();
+  PackingStore packings(default_packing_folder());
+  fmt::print("| virtual test | particles | W = 1 [s] | W = 4 [s] | W = 8 [s] |\n"
+             "| --- | ---: | ---: | ---: | ---: |\n");
+  for (const std::string& id : ids) {
+    TestConfig config = virtual_test(id, Fidelity::search);
+    const std::vector<Field> settings = fields(config);
+    const Field* size = find_field(settings, "num_particles");
+    cost(config, 1, packings);  // makes the packing, so that no row pays for it
+    fmt::print("| `{}` | {} |", id, size ? field_text(*size) : "-");
+    for (const int lanes : {1, 4, 8}) {
+      fmt::print(" {} |", cost(config, lanes, packings));
+      std::fflush(stdout);
+    }
+    fmt::print("\n");
+  }
+}
