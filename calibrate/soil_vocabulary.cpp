@@ -44,6 +44,7 @@ SoilVocabulary built_in() {
       {"stiffness_ratio", 0.1, 100.0},
       {"friction", 0.0, 5.0},
       {"wall_friction", 0.0, 5.0},
+      {"tool_friction", 0.0, 5.0},
       {"local_damping", 0.0, 0.95},
       {"grain_density_kg_per_m3", 500.0, 1e4},
   };

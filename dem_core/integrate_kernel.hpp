@@ -3,7 +3,7 @@
 // Damping and one semi-implicit Euler step over Pack<W>; then the whole step.
 #pragma once
 
-#include "dem_core/walls_kernel.hpp"
+#include "dem_core/tools_kernel.hpp"
 
 namespace tilth::lanes {
 
@@ -59,6 +59,7 @@ void step_lanes(const StepView& view) {
   if (view.num_bonds > 0) accumulate_pair_forces<W, true>(view, law);
   else accumulate_pair_forces<W, false>(view, law);
   accumulate_wall_forces(view, law);
+  if (view.num_tools > 0) accumulate_tool_forces(view, law);
   integrate(view, law);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_core/mesh.hpp"
+
 namespace tilth {
 namespace {
 
@@ -22,6 +24,8 @@ void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& 
           "shear_stiffness_ratio", law.shear_stiffness_ratio, "> 0");
   require(finite_from_zero(law.friction), "friction", law.friction, "finite and >= 0");
   require(finite_from_zero(law.wall_friction), "wall_friction", law.wall_friction,
+          "finite and >= 0");
+  require(finite_from_zero(law.tool_friction), "tool_friction", law.tool_friction,
           "finite and >= 0");
   require(finite_from_zero(law.normal_damping), "normal_damping", law.normal_damping,
           "finite and >= 0");
@@ -60,6 +64,12 @@ std::vector<std::string> problems(const Model& model) {
   for (std::size_t w = 0; w < model.walls.size(); ++w)
     if (!(std::abs(model.walls[w].direction.norm() - 1) < 1e-9))
       found.push_back(fmt::format("wall {}: direction must be a unit vector", w));
+  for (std::size_t t = 0; t < model.tools.size(); ++t) {
+    for (const std::string& sentence : problems(model.tools[t].mesh))
+      found.push_back(fmt::format("tool {}: {}", t, sentence));
+    if (!(model.tools[t].max_depth_m >= 0))
+      found.push_back(fmt::format("tool {}: max_depth_m must be >= 0", t));
+  }
   const auto before = [](const auto& a, const auto& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   };
