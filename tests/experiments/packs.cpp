@@ -17,7 +17,7 @@ struct NamedTest {
   std::function<Batch(std::span<const SoilMaterial>, const RunOptions&)> run;
 };
 
-/// The three tests, small and fast; the shear test at two of its normal stresses.
+/// The tests, small and fast; the shear test at two of its normal stresses.
 std::vector<NamedTest> small_tests() {
   return {{"unconfined compression",
            [](auto members, const RunOptions& o) {
@@ -31,6 +31,10 @@ std::vector<NamedTest> small_tests() {
            }},
           {"confined compression", [](auto members, const RunOptions& o) {
              return run_confined_compression(members, small_confined(), packings(), o);
+           }},
+          {"cone penetration",
+           [](auto members, const RunOptions& o) {
+             return run_cone_penetration(members, tiny_cone(), packings(), o);
            }}};
 }
 

@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/cone_penetration.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
@@ -27,6 +28,15 @@ inline ConfinedCompressionConfig small_confined(double speed = 1.6e-3) {
 
 inline DirectShearConfig small_shear(double speed = 1.6e-3) {
   return {.num_particles = 150, .shear_speed_over_wave_speed = speed, .max_shear_strain = 0.03};
+}
+
+/// Coarse: for bits, not for numbers.
+inline ConePenetrationConfig tiny_cone() {
+  return {.num_particles = 150,
+          .apex_angle_rad = 1.0,
+          .base_diameter_m = 0.02,
+          .depth_m = 0.01,
+          .speed_m_per_s = 0.2};
 }
 
 /// A bonded soil whose bonds cannot break.

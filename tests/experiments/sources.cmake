@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 list(APPEND TILTH_TEST_SOURCES
+  experiments/cone_penetration.cpp
   experiments/confined_compression.cpp
   experiments/curve_features.cpp
   experiments/direct_shear.cpp
