@@ -79,7 +79,7 @@ struct ShearTask {
 };
 
 struct LaneProgress {
-  int steady_intervals = 0;   ///< consecutive ones with the normal stress on target
+  SteadyStress steady;
   bool shearing = false;
   double start_time_s = 0.0;
   double start_height_m = 0.0;
@@ -118,9 +118,7 @@ class ShearProtocol {
   void consolidate(LaneRun& run, int lane, LaneProgress& p) {
     const std::size_t k = static_cast<std::size_t>(lane);
     const double target_Pa = tasks_[k].normal_stress_Pa;
-    const bool on_target = std::abs(normal_stress_Pa(run, lane) - target_Pa) < 0.02 * target_Pa;
-    p.steady_intervals = on_target ? p.steady_intervals + 1 : 0;
-    if (p.steady_intervals >= 3) begin_shear(run, lane, p);
+    if (p.steady.update(normal_stress_Pa(run, lane), target_Pa)) begin_shear(run, lane, p);
     else if (run.specimen.state.num_steps > 200'000)
       run.finish(lane, RunStatus::not_settled,
                  fmt::format("normal stress {:.4g} Pa did not settle at {:.4g} Pa",

@@ -20,4 +20,11 @@ namespace tilth {
 void hold_stress(LaneRun& run, int wall, int lane, double stress_Pa, double area_m2,
                  double max_speed_m_per_s);
 
+/// Counts consecutive intervals in which a stress is within 2 % of its target.
+struct SteadyStress {
+  int intervals = 0;
+  /// True from the third such interval on.
+  bool update(double stress_Pa, double target_Pa);
+};
+
 }  // namespace tilth

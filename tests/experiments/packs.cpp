@@ -35,6 +35,9 @@ std::vector<NamedTest> small_tests() {
           {"cone penetration",
            [](auto members, const RunOptions& o) {
              return run_cone_penetration(members, tiny_cone(), packings(), o);
+           }},
+          {"vane shear", [](auto members, const RunOptions& o) {
+             return run_vane_shear(members, tiny_vane(), packings(), o);
            }}};
 }
 

@@ -9,6 +9,7 @@
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
+#include "experiments/vane_shear.hpp"
 
 namespace tilth::testing {
 
@@ -37,6 +38,10 @@ inline ConePenetrationConfig tiny_cone() {
           .base_diameter_m = 0.02,
           .depth_m = 0.01,
           .speed_m_per_s = 0.2};
+}
+
+inline VaneShearConfig tiny_vane() {
+  return {.num_particles = 150, .tip_speed_over_wave_speed = 3e-3, .max_rotation_rad = 0.15};
 }
 
 /// A bonded soil whose bonds cannot break.

@@ -7,4 +7,5 @@ list(APPEND TILTH_TEST_SOURCES
   experiments/failed_runs.cpp
   experiments/field.cpp
   experiments/packs.cpp
-  experiments/unconfined_compression.cpp)
+  experiments/unconfined_compression.cpp
+  experiments/vane_shear.cpp)
