@@ -31,6 +31,12 @@ SoilVocabulary built_in() {
       {"confined_compression", "reload_modulus_Pa", 1e5, 1e9, unload_stresses},
       {"confined_compression", "radial_stress_ratio", 0.05, 2.0, load_stresses},
       {"confined_compression", "compression_strain", 1e-4, 0.6, load_stresses},
+      {"cone_penetration", "cone_resistance_Pa", 1e3, 2e7, none},
+      {"cone_penetration", "cone_resistance_gradient_Pa_per_m", 1e3, 5e8, none},
+      {"cone_penetration", "pull_out_force_N", 1e-3, 1e4, none},
+      {"vane_shear", "vane_strength_Pa", 200.0, 1e6, none},
+      {"vane_shear", "residual_vane_strength_Pa", 100.0, 1e6, none},
+      {"vane_shear", "rotation_at_peak_rad", 2e-3, 2.0, none},
   };
   words.parameters = {
       {"bond_modulus_Pa", 1.0, 1e12},
@@ -59,6 +65,11 @@ SoilVocabulary built_in() {
       {"load_from_stress_Pa", 0.0, 1e7},
       {"load_to_stress_Pa", 100.0, 1e7},
       {"unload_to_stress_Pa", 0.0, 1e7},
+      {"base_diameter_m", 2e-3, 0.2},
+      {"apex_angle_rad", 0.1, 3.0},
+      {"surcharge_stress_Pa", 1.0, 1e6},
+      {"vane_diameter_m", 5e-3, 0.3},
+      {"vane_height_m", 5e-3, 0.6},
   };
   return words;
 }

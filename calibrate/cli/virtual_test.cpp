@@ -46,6 +46,17 @@ void apply_fidelity(ConfinedCompressionConfig& c, Fidelity fidelity) {
   c.platen_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(ConePenetrationConfig& c, Fidelity fidelity) {
+  // Twice the grains: the chamber is wide for its cone. Speed as a multiple of the standard's 30 mm/s.
+  c.num_particles = 2 * size_of(fidelity).num_particles;
+  c.speed_m_per_s = 100 * size_of(fidelity).speed_over_wave_speed;
+}
+
+void apply_fidelity(VaneShearConfig& c, Fidelity fidelity) {
+  c.num_particles = 2 * size_of(fidelity).num_particles;
+  c.tip_speed_over_wave_speed = size_of(fidelity).speed_over_wave_speed;
+}
+
 std::vector<ExperimentResult> run(const UnconfinedCompressionConfig& c,
                                   std::span<const SoilMaterial> m, PackingStore& p,
                                   const RunOptions& o) {
@@ -60,17 +71,27 @@ std::vector<ExperimentResult> run(const ConfinedCompressionConfig& c,
                                   const RunOptions& o) {
   return run_confined_compression(m, c, p, o);
 }
+std::vector<ExperimentResult> run(const ConePenetrationConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_cone_penetration(m, c, p, o);
+}
+std::vector<ExperimentResult> run(const VaneShearConfig& c, std::span<const SoilMaterial> m,
+                                  PackingStore& p, const RunOptions& o) {
+  return run_vane_shear(m, c, p, o);
+}
 
 const std::vector<TestConfig>& all_tests() {
   static const std::vector<TestConfig> tests = {
-      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{}};
+      UnconfinedCompressionConfig{}, DirectShearConfig{}, ConfinedCompressionConfig{},
+      ConePenetrationConfig{}, VaneShearConfig{}};
   return tests;
 }
 
 }  // namespace
 
 const char* test_id(const TestConfig& config) {
-  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression"};
+  constexpr const char* ids[] = {"unconfined_compression", "direct_shear", "confined_compression",
+                                 "cone_penetration", "vane_shear"};
   return ids[config.index()];
 }
 

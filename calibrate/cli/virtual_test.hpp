@@ -9,14 +9,17 @@
 #include <vector>
 
 #include "calibrate/soil_data.hpp"
+#include "experiments/cone_penetration.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
+#include "experiments/vane_shear.hpp"
 
 namespace tilth {
 
 using TestConfig =
-    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig>;
+    std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
+                 ConePenetrationConfig, VaneShearConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -25,7 +28,7 @@ enum class Fidelity {
   confirm   ///< about 1500 spheres, slow
 };
 
-/// "unconfined_compression", "direct_shear", "confined_compression".
+/// "unconfined_compression", "direct_shear", "confined_compression", "cone_penetration", "vane_shear".
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests
