@@ -53,6 +53,12 @@ SoilVocabulary built_in() {
       {"interface_shear", "peak_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
       {"interface_shear", "residual_interface_stress_Pa", 50.0, 1e6, one_normal_stress},
       {"angle_of_repose", "repose_angle_rad", 0.1, 1.4, none},
+      {"cone_penetration", "cone_resistance_Pa", 1e3, 2e7, none},
+      {"cone_penetration", "cone_resistance_gradient_Pa_per_m", 1e3, 5e8, none},
+      {"cone_penetration", "pull_out_force_N", 1e-3, 1e4, none},
+      {"vane_shear", "vane_strength_Pa", 200.0, 1e6, none},
+      {"vane_shear", "residual_vane_strength_Pa", 100.0, 1e6, none},
+      {"vane_shear", "rotation_at_peak_rad", 2e-3, 2.0, none},
   };
   words.parameters = {
       {"bond_modulus_Pa", 0.0, 1e12},
@@ -67,6 +73,7 @@ SoilVocabulary built_in() {
       {"friction", 0.0, 5.0},
       {"wall_friction", 0.0, 5.0},
       {"rolling_friction", 0.0, 2.0},
+      {"tool_friction", 0.0, 5.0},
       {"local_damping", 0.0, 0.95},
       {"grain_density_kg_per_m3", 500.0, 1e4},
   };
@@ -86,6 +93,11 @@ SoilVocabulary built_in() {
       {"second_load_to_stress_Pa", 100.0, 1e7},
       {"fast_rate_ratio", 1.0, 1000.0},
       {"cut_angle_rad", -3.2, 3.2},
+      {"base_diameter_m", 2e-3, 0.2},
+      {"apex_angle_rad", 0.1, 3.0},
+      {"surcharge_stress_Pa", 1.0, 1e6},
+      {"vane_diameter_m", 5e-3, 0.3},
+      {"vane_height_m", 5e-3, 0.6},
   };
   // Upper bounds of stress let no usual test survive a factor of 1000; the lower ones catch kPa.
   words.curves = {{"drained_triaxial",

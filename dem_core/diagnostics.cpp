@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "dem_core/tool_geometry.hpp"
 #include "dem_core/wall_geometry.hpp"
 
 namespace tilth {
@@ -92,6 +93,20 @@ Energy energy(const Model& model, const State& state, const Workspace& workspace
             stored_vector(state.wall_contacts.spring_m, c * 3, lanes, lane).squaredNorm() +
                 std::pow(model.radius_m[as_size(state.wall_contacts.particle[c])], 2) *
                     rolling_angle_rad(state.wall_contacts.rolling_rad, c, lanes, lane).squaredNorm());
+    }
+  for (std::size_t t = 0; t < model.tools.size(); ++t)
+    for (auto c = as_size(state.tool_contacts.row_begin[t]);
+         c < as_size(state.tool_contacts.row_begin[t + 1]); ++c) {
+      const Vec3 x = state.position_m(state.tool_contacts.particle[c], lane_id);
+      const WallRecord& record = workspace.tool_pairs[c];
+      const auto d = feature_distance(
+          workspace.tool_features[t], as_size(state.tool_contacts.feature[c]),
+          to_body_frame(state, static_cast<int>(t), x, lane_id), record.reference_m,
+          model.tools[t].max_depth_m);
+      if (d)
+        e.tools_J += spring_energy_J(
+            law, record.stiffness_factor, record.reference_m - d->distance_m,
+            stored_vector(state.tool_contacts.spring_m, c * 3, lanes, lane).squaredNorm());
     }
   return e;
 }

@@ -11,9 +11,10 @@ struct Energy {
   double kinetic_J = 0.0;    ///< translation and rotation
   double contacts_J = 0.0;   ///< k_n d^2/2 + k_s s^2/2 + k_r angle^2/2 of grain contacts
   double walls_J = 0.0;      ///< the same of wall contacts
+  double tools_J = 0.0;      ///< the same of tool contacts
   double bonds_J = 0.0;      ///< k_n d^2/2 + F_s^2/2k_s + M_b^2/2k_b + M_t^2/2k_t of unbroken bonds
   double gravity_J = 0.0;    ///< -m g . x
-  double total_J() const { return kinetic_J + contacts_J + walls_J + bonds_J + gravity_J; }
+  double total_J() const { return kinetic_J + contacts_J + walls_J + tools_J + bonds_J + gravity_J; }
 };
 
 /// Needs a workspace that belongs to the state (after a step).

@@ -3,7 +3,7 @@
 // Damping and one semi-implicit Euler step over Pack<W>; then the whole step.
 #pragma once
 
-#include "dem_core/walls_kernel.hpp"
+#include "dem_core/tools_kernel.hpp"
 
 namespace tilth::lanes {
 
@@ -65,6 +65,7 @@ void step_lanes(const StepView& view) {
   const Law<W> law(view.law);
   if (view.has_rolling) accumulate_forces<W, true>(view, law);
   else accumulate_forces<W, false>(view, law);
+  if (view.num_tools > 0) accumulate_tool_forces(view, law);
   integrate(view, law);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dem_core/mesh.hpp"
+
 namespace tilth {
 namespace {
 
@@ -24,6 +26,8 @@ void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& 
   require(finite_from_zero(law.wall_friction), "wall_friction", law.wall_friction,
           "finite and >= 0");
   require(finite_from_zero(law.rolling_friction), "rolling_friction", law.rolling_friction,
+          "finite and >= 0");
+  require(finite_from_zero(law.tool_friction), "tool_friction", law.tool_friction,
           "finite and >= 0");
   require(finite_from_zero(law.normal_damping), "normal_damping", law.normal_damping,
           "finite and >= 0");
@@ -68,6 +72,12 @@ std::vector<std::string> problems(const Model& model) {
   for (std::size_t w = 0; w < model.walls.size(); ++w)
     if (const double scale = model.walls[w].friction_scale; !(std::isfinite(scale) && scale >= 0))
       found.push_back(fmt::format("wall {}: friction_scale = {}: must be finite and >= 0", w, scale));
+  for (std::size_t t = 0; t < model.tools.size(); ++t) {
+    for (const std::string& sentence : problems(model.tools[t].mesh))
+      found.push_back(fmt::format("tool {}: {}", t, sentence));
+    if (!(model.tools[t].max_depth_m >= 0))
+      found.push_back(fmt::format("tool {}: max_depth_m must be >= 0", t));
+  }
   const auto before = [](const auto& a, const auto& b) {
     return a.i != b.i ? a.i < b.i : a.j < b.j;
   };

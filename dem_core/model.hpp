@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-// What does not change during a run: grains, laws of every lane, bonds as made, walls as shapes.
+// What does not change during a run: grains, laws of every lane, bonds as made, walls and tools as
+// shapes.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -34,6 +36,7 @@ struct LaneLaw {
   double friction = 0.5;               ///< Coulomb coefficient between grains, >= 0
   double wall_friction = 0.0;          ///< Coulomb coefficient on walls, >= 0; see friction_scale
   double rolling_friction = 0.0;       ///< mu_r of unbonded contacts and of walls, >= 0 (rolling.md)
+  double tool_friction = 0.0;          ///< Coulomb coefficient on tools, >= 0
   double normal_damping = 0.0;         ///< see DampingKind, >= 0
   double tangential_damping = 0.0;     ///< see DampingKind (with m_eff k_n), >= 0
   double local_damping = 0.0;          ///< alpha in F - alpha |F| sign(v), in [0, 1)
@@ -65,6 +68,23 @@ struct Wall {
   }
 };
 
+/// Triangles seen counter-clockwise from outside; see mesh.hpp for what makes them a solid.
+struct Mesh {
+  std::vector<Vec3> vertex_m;
+  std::vector<std::array<std::int32_t, 3>> triangle;
+};
+
+/// A rigid body with prescribed motion whose surface is a mesh in its own frame. Its pose belongs to
+/// State, since every lane may move it differently; here is the pose at the start.
+struct Tool {
+  Mesh mesh;                       ///< in the body frame; the tool turns about its origin
+  Vec3 position_m = Vec3::Zero();  ///< of the body frame's origin
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< body frame to world
+  /// A grain whose centre is further than this behind a face is let go. A face pushes only outwards,
+  /// and a grain let go inside the tool stays there unnoticed; must be below half the thinnest part.
+  double max_depth_m = 0.0;
+};
+
 /// Distance at which a pair carries no contact force, where it is not r_i + r_j.
 struct ReferenceDistance {
   std::int32_t i = 0;
@@ -80,6 +100,13 @@ struct WallReference {
   /// Glued for good: the contact's springs and dashpots act at any distance, in tension too, and the
   /// tangential one never slips.
   bool glued = false;
+};
+
+/// The same for a tool: holds for every feature of its mesh.
+struct ToolReference {
+  std::int32_t tool = 0;
+  std::int32_t particle = 0;
+  double distance_m = 0.0;
 };
 
 struct Model {
@@ -98,6 +125,8 @@ struct Model {
   std::vector<ReferenceDistance> references;  ///< sorted by (i, j), i < j
   std::vector<WallReference> wall_references;
   std::vector<Wall> walls;
+  std::vector<Tool> tools;
+  std::vector<ToolReference> tool_references;
   Vec3 gravity_m_per_s2 = Vec3::Zero();
   double skin_m = 0.0;  ///< Verlet margin; 0 means 0.3 times the smallest radius
 

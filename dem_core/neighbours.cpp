@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "dem_core/tool_geometry.hpp"
 #include "dem_core/wall_geometry.hpp"
 
 namespace tilth {
@@ -220,13 +221,18 @@ bool near_wall(const Model& model, const State& state, const Workspace& workspac
   return false;
 }
 
-WallRecord wall_record(const Model& model, int particle, const WallReference* reference) {
+/// A grain against a rigid body, wall or tool.
+WallRecord rigid_record(const Model& model, int particle, double reference_m, bool glued) {
   const double r = model.radius_m[as_size(particle)];
   const double mass = model.mass_kg[as_size(particle)];
   const double stiffness = model.stiffness_kind == StiffnessKind::modulus ? M_PI * r : 1.0;
   const bool rate = model.damping_kind == DampingKind::rate;
-  return {reference ? reference->distance_m : r, stiffness,
-          rate ? mass : std::sqrt(mass * stiffness), reference && reference->glued};
+  return {reference_m, stiffness, rate ? mass : std::sqrt(mass * stiffness), glued};
+}
+
+WallRecord wall_record(const Model& model, int particle, const WallReference* reference) {
+  const double touching_m = reference ? reference->distance_m : model.radius_m[as_size(particle)];
+  return rigid_record(model, particle, touching_m, reference && reference->glued);
 }
 
 void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
@@ -258,11 +264,64 @@ void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
   state.wall_contacts = std::move(fresh);
 }
 
+/// Features of a tool that a grain may touch before the next rebuild, in at least one active lane.
+std::vector<Index> near_features(const Model& model, const State& state, const Workspace& workspace,
+                                 int tool, int particle, double extent_m) {
+  std::vector<Index> found;
+  const double reach_m = model.radius_m[as_size(particle)] + workspace.skin_m;
+  const MeshFeatures& mesh = workspace.tool_features[as_size(tool)];
+  for (int lane = 0; lane < state.num_lanes; ++lane) {
+    if (!state.active[as_size(lane)]) continue;
+    const Vec3 arm = state.position_m(particle, lane) - state.tool_position_m(tool, lane);
+    const double farthest_m = extent_m + reach_m;
+    if (!(arm.squaredNorm() < farthest_m * farthest_m)) continue;
+    const Vec3 x = to_body_frame(state, tool, state.position_m(particle, lane), lane);
+    for (std::size_t f = 0; f < mesh.features.size(); ++f)
+      if (feature_distance(mesh, f, x, reach_m, model.tools[as_size(tool)].max_depth_m,
+                           workspace.skin_m))
+        found.push_back(static_cast<Index>(f));
+  }
+  std::ranges::sort(found);
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+void rebuild_tools(const Model& model, State& state, Workspace& workspace) {
+  const ToolContactMemory old = std::move(state.tool_contacts);
+  ToolContactMemory fresh;
+  const std::size_t lanes = as_size(state.num_lanes);
+  fresh.row_begin.assign(model.tools.size() + 1, 0);
+  workspace.tool_pairs.clear();
+  for (std::size_t tool = 0; tool < model.tools.size(); ++tool) {
+    std::size_t k = as_size(old.row_begin[tool]);
+    const std::size_t k_end = as_size(old.row_begin[tool + 1]);
+    const double extent_m = tool_extent_m(model.tools[tool]);
+    for (Index i = 0; i < model.num_particles(); ++i)
+      for (const Index f :
+           near_features(model, state, workspace, static_cast<int>(tool), i, extent_m)) {
+        fresh.particle.push_back(i);
+        fresh.feature.push_back(f);
+        fresh.spring_m.resize(fresh.particle.size() * 3 * lanes, 0.0);
+        while (k < k_end && (old.particle[k] < i || (old.particle[k] == i && old.feature[k] < f)))
+          ++k;
+        if (k < k_end && old.particle[k] == i && old.feature[k] == f)
+          copy_spring(old.spring_m, k, fresh.spring_m, fresh.particle.size() - 1, lanes);
+        double reference_m = model.radius_m[as_size(i)];
+        for (const ToolReference& r : model.tool_references)
+          if (r.tool == static_cast<Index>(tool) && r.particle == i) reference_m = r.distance_m;
+        workspace.tool_pairs.push_back(rigid_record(model, i, reference_m, false));
+      }
+    fresh.row_begin[tool + 1] = static_cast<Index>(fresh.particle.size());
+  }
+  state.tool_contacts = std::move(fresh);
+}
+
 }  // namespace
 
 void rebuild_neighbours(const Model& model, State& state, Workspace& workspace) {
   rebuild_pairs(model, state, workspace);
   rebuild_walls(model, state, workspace);
+  rebuild_tools(model, state, workspace);
   workspace.moved_m.assign(as_size(state.num_lanes), 0.0);
   ++workspace.num_rebuilds;
 }

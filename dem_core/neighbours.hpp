@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-// Cell grid and Verlet list: which pairs and wall contacts the force loops visit.
+// Cell grid and Verlet list: which pairs, wall contacts and tool contacts the force loops visit.
 #pragma once
 
 #include "dem_core/state.hpp"
@@ -8,7 +8,7 @@
 namespace tilth {
 
 /// Lists every pair closer than its reference distance plus the skin in at least one active lane,
-/// every bond, and every grain that near to a wall; keeps contact memory of pairs that stay.
+/// every bond, and every grain that near to a wall or a feature of a tool; keeps contact memory of pairs that stay.
 /// The list only has to be long enough: pairs out of reach add exactly nothing.
 /// @cost O(num_particles x num_lanes)
 void rebuild_neighbours(const Model& model, State& state, Workspace& workspace);

@@ -11,6 +11,7 @@
 
 #include "dem_core/neighbours.hpp"
 #include "dem_core/step.hpp"
+#include "dem_core/tool_geometry.hpp"
 
 namespace tilth {
 namespace {
@@ -108,8 +109,8 @@ void run(Model& model, State& state, Workspace& workspace, int num_steps) {
   for (int n = 0; n < num_steps; ++n) step(model, state, workspace);
 }
 
-/// Relaxes until the overlaps are gone or stop falling; the grains in spatial order.
-Packing relaxed(Model& model, State& state, Workspace& workspace, double mean_radius_m) {
+/// Steps until the overlaps are gone or stop falling.
+Overlaps relax(Model& model, State& state, Workspace& workspace) {
   Overlaps before = overlaps(model, state);
   for (int k = 0; k < 60 && before.largest > 1e-3; ++k) {
     run(model, state, workspace, 200);
@@ -118,13 +119,20 @@ Packing relaxed(Model& model, State& state, Workspace& workspace, double mean_ra
     before = after;
     if (stalled) break;
   }
+  return before;
+}
+
+/// The grains of a state in spatial order.
+Packing ordered(const State& state, const std::vector<double>& radius_m, double mean_radius_m,
+                double largest_overlap) {
   Packing packing;
   packing.mean_radius_m = mean_radius_m;
-  packing.largest_overlap = before.largest;
-  std::vector<Vec3> position_m;
-  for (int i = 0; i < model.num_particles(); ++i) position_m.push_back(state.position_m(i));
+  packing.largest_overlap = largest_overlap;
+  std::vector<Vec3> position_m(radius_m.size());
+  for (std::size_t i = 0; i < position_m.size(); ++i)
+    position_m[i] = state.position_m(static_cast<int>(i));
   for (const int i : spatial_order(position_m, 2.5 * mean_radius_m)) {
-    packing.radius_m.push_back(model.radius_m[as_size(i)]);
+    packing.radius_m.push_back(radius_m[as_size(i)]);
     packing.position_m.push_back(position_m[as_size(i)]);
   }
   return packing;
@@ -132,6 +140,10 @@ Packing relaxed(Model& model, State& state, Workspace& workspace, double mean_ra
 
 double mean_of(const std::vector<double>& x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
+
+bool clear_of(const Tool& tool, const MeshFeatures& mesh, const Vec3& centre_m, double radius_m) {
+  return tool_distance_m(tool, mesh, centre_m, 0.2 * radius_m) >= 0.2 * radius_m;
 }
 
 }  // namespace
@@ -192,8 +204,11 @@ Packing make_packing(const PackingSpec& spec) {
     run(model, state, workspace, 20);
   }
 
-  // 3. relax, 4. store in spatial order
-  return relaxed(model, state, workspace, mean_radius_m);
+  // 3. relax until the overlaps are gone or stop falling
+  const Overlaps left = relax(model, state, workspace);
+
+  // 4. store in spatial order
+  return ordered(state, radius_m, mean_radius_m, left.largest);
 }
 
 Packing relaxed_packing(const PackingSpec& spec, const std::vector<double>& radius_m,
@@ -202,7 +217,31 @@ Packing relaxed_packing(const PackingSpec& spec, const std::vector<double>& radi
   Model model = relaxation_model(spec, radius_m, mean_radius_m);
   State state = initial_state(model, position_m);
   Workspace workspace;
-  return relaxed(model, state, workspace, mean_radius_m);
+  const Overlaps left = relax(model, state, workspace);
+  return ordered(state, radius_m, mean_radius_m, left.largest);
+}
+
+Packing packing_around(const PackingSpec& spec, const Packing& packing,
+                       const std::vector<Tool>& tools) {
+  std::vector<double> radius_m;
+  std::vector<Vec3> position_m;
+  std::vector<MeshFeatures> meshes;
+  for (const Tool& tool : tools) meshes.push_back(mesh_features(tool.mesh));
+  for (std::size_t i = 0; i < packing.radius_m.size(); ++i) {
+    bool clear = true;
+    for (std::size_t t = 0; t < tools.size(); ++t)
+      clear = clear && clear_of(tools[t], meshes[t], packing.position_m[i], packing.radius_m[i]);
+    if (!clear) continue;
+    radius_m.push_back(packing.radius_m[i]);
+    position_m.push_back(packing.position_m[i]);
+  }
+  Model model = relaxation_model(spec, radius_m, packing.mean_radius_m);
+  model.tools = tools;
+  State state = initial_state(model, position_m);
+  Workspace workspace;
+  run(model, state, workspace, 1000);  // what the tools push aside is no overlap of grains yet
+  const Overlaps left = relax(model, state, workspace);
+  return ordered(state, radius_m, packing.mean_radius_m, left.largest);
 }
 
 }  // namespace tilth

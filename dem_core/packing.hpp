@@ -47,6 +47,12 @@ Packing make_packing(const PackingSpec& spec);
 Packing relaxed_packing(const PackingSpec& spec, const std::vector<double>& radius_m,
                         const std::vector<Vec3>& position_m);
 
+/// The packing with rigid tools in it: grains whose centre lies in a tool (as deep as its max_depth_m)
+/// or nearer to it than a fifth of their radius are left out; the others, frictionless, are pushed
+/// aside by the tools until the overlaps are gone or stop falling.
+Packing packing_around(const PackingSpec& spec, const Packing& packing,
+                       const std::vector<Tool>& tools);
+
 /// Uniform in [0, 1) with 53 bits; the same everywhere, unlike the library's distributions.
 double uniform01(std::mt19937_64& rng);
 

@@ -44,6 +44,18 @@ std::filesystem::path default_packing_folder() {
   return {};
 }
 
+PackingStore::Numbers PackingStore::numbers(const std::string& key,
+                                            const std::function<Numbers()>& make) {
+  {
+    const std::lock_guard lock(numbers_mutex_);
+    if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
+  }
+  Numbers made = make();  // two threads may both come here; they make the same
+  const std::lock_guard lock(numbers_mutex_);
+  if (!made.empty()) numbers_.emplace(key, made);
+  return made;
+}
+
 std::shared_ptr<const Packing> read_packing(const std::filesystem::path& file,
                                             const std::string& key) {
   std::ifstream in(file);

@@ -4,10 +4,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "dem_core/packing.hpp"
 
@@ -30,6 +32,11 @@ class PackingStore {
   /// @pre problems(spec) is empty
   std::shared_ptr<const Packing> get(const PackingSpec& spec);
 
+  /// What is measured on a packing once, such as the void ratio of its densest state; kept in memory.
+  /// `make` is called again for a key only if it gave nothing (a run that was stopped).
+  using Numbers = std::vector<double>;
+  Numbers numbers(const std::string& key, const std::function<Numbers()>& make);
+
  private:
   struct Slot {
     std::once_flag made;
@@ -38,6 +45,8 @@ class PackingStore {
   std::filesystem::path folder_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Slot>> slots_;
+  std::mutex numbers_mutex_;
+  std::map<std::string, Numbers> numbers_;
 };
 
 /// Text with hexadecimal floats: exact. Returns nothing where the file is absent or not of this key.

@@ -31,6 +31,12 @@ void for_each_array(StateRef& s, Visit visit) {
   visit(s.bonds);
   visit(s.walls);
   visit(s.wall_force);
+  visit(s.tool_contacts.row_begin);
+  visit(s.tool_contacts.particle);
+  visit(s.tool_contacts.feature);
+  visit(s.tool_contacts.spring_m);
+  visit(s.tools);
+  visit(s.tool_load);
   visit(s.time_s);
   visit(s.active);
 }
@@ -47,6 +53,16 @@ DriveRecord flat(const WallDrive& d) {
 
 WallDrive unflat(const DriveRecord& r) {
   return {Vec3(r.v[0], r.v[1], r.v[2]), r.v[3], r.v[4], r.v[5], r.v[6], r.v[7]};
+}
+
+std::array<double, 6> flat(const ToolDrive& d) {
+  return {d.velocity_m_per_s.x(),           d.velocity_m_per_s.y(),
+          d.velocity_m_per_s.z(),           d.angular_velocity_rad_per_s.x(),
+          d.angular_velocity_rad_per_s.y(), d.angular_velocity_rad_per_s.z()};
+}
+
+ToolDrive unflat(const std::array<double, 6>& v) {
+  return {Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
 }
 
 template <typename T>
@@ -71,6 +87,9 @@ State read_state(std::istream& in) {
   state.num_steps = take<std::int64_t>(in);
   const auto num_drives = take<std::uint64_t>(in);
   for (std::uint64_t k = 0; k < num_drives; ++k) state.drives.push_back(unflat(take<DriveRecord>(in)));
+  const auto num_tool_drives = take<std::uint64_t>(in);
+  for (std::uint64_t k = 0; k < num_tool_drives; ++k)
+    state.tool_drives.push_back(unflat(take<std::array<double, 6>>(in)));
   for_each_array(state, [&in](auto& array) {
     using T = typename std::remove_reference_t<decltype(array)>::value_type;
     const auto n = take<std::uint64_t>(in);
@@ -93,6 +112,8 @@ void save_snapshot(const State& state, const std::filesystem::path& file) {
   put(out, state.num_steps);
   put(out, static_cast<std::uint64_t>(state.drives.size()));
   for (const WallDrive& d : state.drives) put(out, flat(d));
+  put(out, static_cast<std::uint64_t>(state.tool_drives.size()));
+  for (const ToolDrive& d : state.tool_drives) put(out, flat(d));
   for_each_array(state, [&out](const auto& array) {
     using T = typename std::remove_cvref_t<decltype(array)>::value_type;
     put(out, static_cast<std::uint64_t>(array.size()));

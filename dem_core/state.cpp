@@ -9,10 +9,16 @@ std::size_t as_size(int k) { return static_cast<std::size_t>(k); }
 
 }  // namespace
 
-Vec3 State::motion_part(int particle, int first, int lane) const {
-  const std::size_t p = pack(particle, 9, first) + at(lane);
+Vec3 State::part(const AlignedDoubles& block, int item, int packs_per_item, int first,
+                 int lane) const {
+  const std::size_t p = pack(item, packs_per_item, first) + at(lane);
   const std::size_t w = at(num_lanes);
-  return {motion[p], motion[p + w], motion[p + 2 * w]};
+  return {block[p], block[p + w], block[p + 2 * w]};
+}
+
+Eigen::Quaterniond State::tool_orientation(int tool, int lane) const {
+  const Vec3 imaginary = part(tools, tool, 7, 4, lane);
+  return {tools[pack(tool, 7, 3) + at(lane)], imaginary.x(), imaginary.y(), imaginary.z()};
 }
 
 void State::set_motion_part(int particle, int first, const Vec3& value) {
@@ -21,10 +27,8 @@ void State::set_motion_part(int particle, int first, const Vec3& value) {
       motion[pack(particle, 9, first + k) + at(lane)] = value[k];
 }
 
-Vec3 State::wall_part(int wall, int first, int lane) const {
-  const std::size_t p = pack(wall, 6, first) + at(lane);
-  const std::size_t w = at(num_lanes);
-  return {wall_force[p], wall_force[p + w], wall_force[p + 2 * w]};
+void State::set_tool_position_m(int tool, int lane, const Vec3& x) {
+  for (int k = 0; k < 3; ++k) tools[pack(tool, 7, k) + at(lane)] = x[k];
 }
 
 State initial_state(const Model& model, const std::vector<Vec3>& position_m) {
@@ -48,6 +52,15 @@ State initial_state(const Model& model, const std::vector<Vec3>& position_m) {
     }
   state.wall_force.assign(model.walls.size() * 6 * w, 0.0);
   state.drives.assign(model.walls.size() * w, WallDrive{});
+  state.tool_contacts.row_begin.assign(model.tools.size() + 1, 0);
+  for (const Tool& tool : model.tools) {
+    const Eigen::Quaterniond q = tool.orientation.normalized();
+    for (const double x : {tool.position_m.x(), tool.position_m.y(), tool.position_m.z(), q.w(),
+                           q.x(), q.y(), q.z()})
+      state.tools.insert(state.tools.end(), w, x);
+  }
+  state.tool_load.assign(model.tools.size() * 7 * w, 0.0);
+  state.tool_drives.assign(model.tools.size() * w, ToolDrive{});
   state.time_s.assign(w, 0.0);
   state.active.assign(w, 1);
   return state;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem_core/aligned.hpp"
+#include "dem_core/mesh_features.hpp"
 #include "dem_core/model.hpp"
 #include "dem_core/records.hpp"
 
@@ -26,6 +27,13 @@ struct WallDrive {
   double servo_integral_gain_m_per_N_s2 = 0.0;
   double target_force_N = 0.0;
   double max_speed_m_per_s = 0.0;
+};
+
+/// How one lane moves one tool: its origin translates, its body turns about that origin. Both are
+/// constant in the world's directions until changed.
+struct ToolDrive {
+  Vec3 velocity_m_per_s = Vec3::Zero();
+  Vec3 angular_velocity_rad_per_s = Vec3::Zero();
 };
 
 /// Contact memory in CSR form: row i holds partners j > i in ascending order.
@@ -46,6 +54,14 @@ struct WallContactMemory {
   AlignedDoubles rolling_rad;  ///< [contact][3][W]: rolling angle of the grain, or empty likewise
 };
 
+/// Tool contacts near enough to matter, sorted by tool, particle, feature.
+struct ToolContactMemory {
+  std::vector<std::int32_t> row_begin;  ///< num_tools + 1
+  std::vector<std::int32_t> particle;
+  std::vector<std::int32_t> feature;  ///< of mesh_features(mesh)
+  AlignedDoubles spring_m;            ///< [contact][3][W]: displacement of the grain on the tool
+};
+
 struct State {
   int num_lanes = 1;
   /// [particle][9][W]: x y z [m], velocity [m/s], angular velocity [rad/s].
@@ -59,16 +75,22 @@ struct State {
   /// [wall][6][W]: force on the wall and torque about its point in the last step (servos read it).
   AlignedDoubles wall_force;
   std::vector<WallDrive> drives;   ///< [wall][lane]
+  ToolContactMemory tool_contacts;
+  AlignedDoubles tools;  ///< [tool][7][W]: position of the origin (3) [m], orientation w x y z
+  /// [tool][7][W]: force on the tool, torque about its origin, number of touching contacts, all of
+  /// the last step.
+  AlignedDoubles tool_load;
+  std::vector<ToolDrive> tool_drives;  ///< [tool][lane]
   std::vector<double> time_s;      ///< per lane
-  /// Per lane. A frozen lane keeps its motion, walls, wall forces, time and which bonds hold; contact
+  /// Per lane. A frozen lane keeps its motion, walls, tools, their forces, time and which bonds hold; contact
   /// springs may be dropped. After freezing by hand call model_changed().
   std::vector<std::uint8_t> active;
   std::int64_t num_steps = 0;
 
-  Vec3 position_m(int particle, int lane = 0) const { return motion_part(particle, 0, lane); }
-  Vec3 velocity_m_per_s(int particle, int lane = 0) const { return motion_part(particle, 3, lane); }
+  Vec3 position_m(int particle, int lane = 0) const { return part(motion, particle, 9, 0, lane); }
+  Vec3 velocity_m_per_s(int particle, int lane = 0) const { return part(motion, particle, 9, 3, lane); }
   Vec3 angular_velocity_rad_per_s(int particle, int lane = 0) const {
-    return motion_part(particle, 6, lane);
+    return part(motion, particle, 9, 6, lane);
   }
   void set_position_m(int particle, const Vec3& x) { set_motion_part(particle, 0, x); }
   void set_velocity_m_per_s(int particle, const Vec3& v) { set_motion_part(particle, 3, v); }
@@ -76,15 +98,25 @@ struct State {
     set_motion_part(particle, 6, w);
   }
   bool bond_holds(int bond, int lane = 0) const { return bonds[pack(bond, 8, 7) + at(lane)] > 0.5; }
-  Vec3 wall_position_m(int wall, int lane = 0) const {
-    const std::size_t p = pack(wall, 4, 0) + at(lane);
-    const std::size_t w = at(num_lanes);
-    return {walls[p], walls[p + w], walls[p + 2 * w]};
-  }
+  Vec3 wall_position_m(int wall, int lane = 0) const { return part(walls, wall, 4, 0, lane); }
   /// Force of the specimen on the wall in the last step.
-  Vec3 wall_force_N(int wall, int lane = 0) const { return wall_part(wall, 0, lane); }
+  Vec3 wall_force_N(int wall, int lane = 0) const { return part(wall_force, wall, 6, 0, lane); }
   /// Torque of the specimen on the wall about the wall's point in the last step.
-  Vec3 wall_torque_N_m(int wall, int lane = 0) const { return wall_part(wall, 3, lane); }
+  Vec3 wall_torque_N_m(int wall, int lane = 0) const { return part(wall_force, wall, 6, 3, lane); }
+  Vec3 tool_position_m(int tool, int lane = 0) const { return part(tools, tool, 7, 0, lane); }
+  /// Body frame to world.
+  Eigen::Quaterniond tool_orientation(int tool, int lane = 0) const;
+  /// Puts one lane's tool elsewhere; then call model_changed().
+  void set_tool_position_m(int tool, int lane, const Vec3& x);
+  /// Force of the specimen on the tool in the last step.
+  Vec3 tool_force_N(int tool, int lane = 0) const { return part(tool_load, tool, 7, 0, lane); }
+  /// Torque of the specimen on the tool about its origin in the last step.
+  Vec3 tool_torque_N_m(int tool, int lane = 0) const { return part(tool_load, tool, 7, 3, lane); }
+  /// Touching contacts in the last step; a grain in a concave corner counts twice.
+  int num_tool_contacts(int tool, int lane = 0) const {
+    return static_cast<int>(tool_load[pack(tool, 7, 6) + at(lane)]);
+  }
+  ToolDrive& tool_drive(int tool, int lane) { return tool_drives[at(tool * num_lanes + lane)]; }
   WallDrive& drive(int wall, int lane) { return drives[at(wall * num_lanes + lane)]; }
 
  private:
@@ -92,8 +124,8 @@ struct State {
   std::size_t pack(int item, int packs_per_item, int k) const {
     return (at(item) * at(packs_per_item) + at(k)) * at(num_lanes);
   }
-  Vec3 motion_part(int particle, int first, int lane) const;
-  Vec3 wall_part(int wall, int first, int lane) const;
+  /// Three packs of an item's block, one lane.
+  Vec3 part(const AlignedDoubles& block, int item, int packs_per_item, int first, int lane) const;
   void set_motion_part(int particle, int first, const Vec3& value);  ///< all lanes alike
 };
 
@@ -103,6 +135,10 @@ struct Workspace {
   bool has_rolling = false;  ///< some lane has rolling friction
   std::vector<PairRecord> pairs;
   std::vector<WallRecord> wall_pairs;
+  std::vector<MeshFeatures> tool_features;
+  std::vector<double> tool_reach_m;    ///< per tool: farthest a grain it may touch is from its origin
+  std::vector<WallRecord> tool_pairs;
+  AlignedDoubles tool_motion;          ///< [tool][18][W]: position, body axes, velocity, spin
   AlignedDoubles force;                ///< [particle][6][W]: force [N], torque [N m]
   AlignedDoubles law;                  ///< lane constants as packs
   std::vector<double> inverse_mass_per_kg;

@@ -3,10 +3,12 @@
 #include "dem_core/step.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "dem_core/neighbours.hpp"
+#include "dem_core/tool_geometry.hpp"
 #include "dem_core/view_kernel.hpp"
 
 namespace tilth {
@@ -30,6 +32,7 @@ void write_law(const Model& model, const State& state, Workspace& workspace) {
     put(law_friction, law.friction);
     put(law_wall_friction, law.wall_friction);
     put(law_rolling_friction, law.rolling_friction);
+    put(law_tool_friction, law.tool_friction);
     put(law_normal_damping, law.normal_damping * damping_scale);
     put(law_tangential_damping, law.tangential_damping * damping_scale);
     put(law_local_damping, law.local_damping);
@@ -70,6 +73,13 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
   workspace.has_rolling = std::ranges::any_of(
       model.lanes, [](const LaneLaw& law) { return law.rolling_friction > 0; });
   write_law(model, state, workspace);
+  workspace.tool_features.clear();
+  workspace.tool_reach_m.clear();
+  const double r_max = n == 0 ? 0.0 : *std::ranges::max_element(model.radius_m);
+  for (const Tool& tool : model.tools) {
+    workspace.tool_features.push_back(mesh_features(tool.mesh));
+    workspace.tool_reach_m.push_back(tool_extent_m(tool) + r_max + workspace.skin_m);
+  }
   rebuild_neighbours(model, state, workspace);
   workspace.prepared = true;
 }
@@ -115,7 +125,56 @@ AlignedDoubles move_walls(const Model& model, State& state, Workspace& workspace
   return velocity;
 }
 
-/// moved_m bounds the sum of grain and wall motion per lane; only when that bound uses up the skin
+/// Turns a body by angular velocity x dt, exactly for a constant axis.
+Eigen::Quaterniond turned(const Eigen::Quaterniond& q, const Vec3& angular_velocity_rad_per_s,
+                          double dt_s) {
+  const double speed = angular_velocity_rad_per_s.norm();
+  if (speed == 0) return q;
+  const double half_rad = 0.5 * speed * dt_s;
+  Eigen::Quaterniond step;
+  step.w() = std::cos(half_rad);
+  step.vec() = std::sin(half_rad) / speed * angular_velocity_rad_per_s;
+  return (step * q).normalized();
+}
+
+/// Moves every tool of every active lane and writes its pose and motion for the kernel.
+void move_tools(const Model& model, State& state, Workspace& workspace) {
+  const std::size_t w = model.lanes.size();
+  workspace.tool_motion.assign(model.tools.size() * 18 * w, 0.0);
+  for (std::size_t tool = 0; tool < model.tools.size(); ++tool)
+    for (std::size_t lane = 0; lane < w; ++lane) {
+      const int t = static_cast<int>(tool);
+      const int l = static_cast<int>(lane);
+      ToolDrive drive = state.tool_drives[tool * w + lane];
+      if (!state.active[lane]) drive = {};
+      const double dt_s = model.lanes[lane].dt_s;
+      const Vec3 position_m = state.tool_position_m(t, l) + dt_s * drive.velocity_m_per_s;
+      const Eigen::Quaterniond q =
+          turned(state.tool_orientation(t, l), drive.angular_velocity_rad_per_s, dt_s);
+      const Eigen::Matrix3d axes = q.toRotationMatrix();
+      const auto pose = [&](std::size_t k) -> double& {
+        return state.tools[(tool * 7 + k) * w + lane];
+      };
+      const auto motion = [&](std::size_t k) -> double& {
+        return workspace.tool_motion[(tool * 18 + k) * w + lane];
+      };
+      const std::array<double, 4> wxyz = {q.w(), q.x(), q.y(), q.z()};
+      for (std::size_t k = 0; k < 4; ++k) pose(3 + k) = wxyz[k];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto row = static_cast<Eigen::Index>(k);
+        motion(k) = pose(k) = position_m[row];
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+          motion(3 + 3 * static_cast<std::size_t>(axis) + k) = axes(row, axis);
+        motion(12 + k) = drive.velocity_m_per_s[row];
+        motion(15 + k) = drive.angular_velocity_rad_per_s[row];
+      }
+      const double spin = drive.angular_velocity_rad_per_s.norm();
+      const double speed = drive.velocity_m_per_s.norm() + spin * workspace.tool_reach_m[tool];
+      workspace.moved_m[lane] += dt_s * speed;
+    }
+}
+
+/// moved_m bounds the sum of grain, wall and tool motion per lane; only when that bound uses up the skin
 /// are the true displacements looked at.
 bool list_ran_short(const State& state, Workspace& workspace) {
   double bound = 0.0;
@@ -125,7 +184,8 @@ bool list_ran_short(const State& state, Workspace& workspace) {
 }
 
 lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
-                        const std::vector<lanes::WallView>& walls, const double* wall_velocity) {
+                        const std::vector<lanes::WallView>& walls, const double* wall_velocity,
+                        const std::vector<lanes::ToolView>& tools) {
   lanes::StepView v{};
   v.num_particles = model.num_particles();
   v.num_walls = static_cast<int>(model.walls.size());
@@ -156,6 +216,15 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.walls = state.walls.data();
   v.wall_velocity = wall_velocity;
   v.wall_force = state.wall_force.data();
+  v.num_tools = static_cast<int>(model.tools.size());
+  v.tool_row_begin = state.tool_contacts.row_begin.data();
+  v.tool_particle = state.tool_contacts.particle.data();
+  v.tool_feature = state.tool_contacts.feature.data();
+  v.tool_pairs = workspace.tool_pairs.data();
+  v.tool_spring_m = state.tool_contacts.spring_m.data();
+  v.tool_views = tools.data();
+  v.tool_motion = workspace.tool_motion.data();
+  v.tool_load = state.tool_load.data();
   v.max_speed2 = workspace.max_speed2_m2_per_s2.data();
   v.num_broken = workspace.num_broken.data();
   return v;
@@ -179,6 +248,14 @@ std::vector<lanes::WallView> wall_views(const Model& model) {
     v.friction_scale = wall.friction_scale;
     views.push_back(v);
   }
+  return views;
+}
+
+std::vector<lanes::ToolView> tool_views(const Model& model, const Workspace& workspace) {
+  std::vector<lanes::ToolView> views;
+  for (std::size_t t = 0; t < model.tools.size(); ++t)
+    views.push_back({workspace.tool_features[t].features.data(),
+                     workspace.tool_features[t].half_spaces.data(), model.tools[t].max_depth_m});
   return views;
 }
 
@@ -212,11 +289,11 @@ void close_step(const Model& model, State& state, Workspace& workspace, StepInfo
   ++state.num_steps;
 }
 
-/// The kernel computes all lanes; a frozen one keeps the wall forces it had.
-void restore_frozen(const AlignedDoubles& before, State& state) {
+/// The kernel computes all lanes; a frozen one keeps the forces on walls and tools it had.
+void restore_frozen(const State& state, const AlignedDoubles& before, AlignedDoubles& now) {
   const std::size_t w = state.active.size();
   for (std::size_t k = 0; k < before.size(); ++k)
-    if (!state.active[k % w]) state.wall_force[k] = before[k];
+    if (!state.active[k % w]) now[k] = before[k];
 }
 
 }  // namespace
@@ -240,6 +317,7 @@ StepInfo step(const Model& model, State& state, Workspace& workspace) {
   StepInfo info;
   if (!workspace.prepared) prepare(model, state, workspace);
   const AlignedDoubles wall_velocity = move_walls(model, state, workspace);
+  move_tools(model, state, workspace);
   if (list_ran_short(state, workspace)) {
     rebuild_neighbours(model, state, workspace);
     info.rebuilt = true;
@@ -247,8 +325,12 @@ StepInfo step(const Model& model, State& state, Workspace& workspace) {
   const std::vector<lanes::WallView> walls = wall_views(model);
   const bool any_frozen = std::ranges::find(state.active, 0) != state.active.end();
   const AlignedDoubles wall_force = any_frozen ? state.wall_force : AlignedDoubles{};
-  dispatch(view_of(model, state, workspace, walls, wall_velocity.data()), model.num_lanes());
-  restore_frozen(wall_force, state);
+  const AlignedDoubles tool_load = any_frozen ? state.tool_load : AlignedDoubles{};
+  const std::vector<lanes::ToolView> tools = tool_views(model, workspace);
+  dispatch(view_of(model, state, workspace, walls, wall_velocity.data(), tools),
+           model.num_lanes());
+  restore_frozen(state, wall_force, state.wall_force);
+  restore_frozen(state, tool_load, state.tool_load);
   close_step(model, state, workspace, info);
   return info;
 }

@@ -14,8 +14,8 @@ struct StepInfo {
   bool lane_failed = false;  ///< a lane was frozen in this step because it diverged
 };
 
-/// One step: move walls, rebuild the neighbour list if it may have run short, forces of pairs, bonds
-/// and walls, semi-implicit Euler v += dt F/m, x += dt v for every active lane.
+/// One step: move walls and tools, rebuild the neighbour list if it may have run short, forces of
+/// pairs, bonds, walls and tools, semi-implicit Euler v += dt F/m, x += dt v for every active lane.
 ///
 /// A lane whose fastest grain would cross more than a quarter of the smallest radius in one step, or
 /// whose numbers are no longer finite, is frozen (state.active = 0) and leaves the others alone.
@@ -23,7 +23,7 @@ struct StepInfo {
 /// @pre problems(model) is empty; state came from initial_state(model, ...) or a snapshot
 StepInfo step(const Model& model, State& state, Workspace& workspace);
 
-/// Call after changing Model (laws, radii, references, walls) between steps.
+/// Call after changing Model (laws, radii, references, walls, tools) between steps.
 void model_changed(Workspace& workspace);
 
 /// 8 with AVX-512, 4 with AVX2, else 1.

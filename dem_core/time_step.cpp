@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "dem_core/neighbours.hpp"
+#include "dem_core/tool_geometry.hpp"
 #include "dem_core/wall_geometry.hpp"
 
 namespace tilth {
@@ -81,25 +82,36 @@ void add_pair(const Model& model, const State& state, std::vector<Load>& sum, in
   sum[as_size(j)][kind] += 2 * one_sided(k, n, -0.5 * (distance + rj - ri));
 }
 
-void add_walls(const Model& model, const State& state, std::vector<Load>& sum, int i, int lane) {
+/// Walls and tools.
+void add_rigid_bodies(const Model& model, const State& state,
+                      const std::vector<MeshFeatures>& tool_features, std::vector<Load>& sum, int i,
+                      int lane) {
   const double r = model.radius_m[as_size(i)];
   const Vec3 x = state.position_m(i, lane);
   const double factor = model.stiffness_kind == StiffnessKind::modulus ? std::numbers::pi * r : 1.0;
   const ContactMatrices k =
       contact_matrices(model, model.lanes[as_size(lane)], factor, model.mass_kg[as_size(i)], r);
-  const auto add = [&](int w, double distance) {
-    const Vec3 n = wall_normal(model, state, w, x, lane);
+  const auto add = [&](const Vec3& n, double distance) {
     sum[as_size(i)][0] += one_sided(k.springs, n, distance);
     sum[as_size(i)][1] += one_sided(k.dashpots, n, distance);
   };
   for (int w = 0; w < static_cast<int>(model.walls.size()); ++w) {
     const double distance = wall_distance_m(model, state, w, x, lane);
-    if (distance <= 1.02 * r) add(w, distance);
+    if (distance > 1.02 * r) continue;
+    add(wall_normal(model, state, w, x, lane), distance);
   }
   for (const WallReference& reference : model.wall_references) {
     if (!reference.glued || reference.particle != i) continue;
     const double distance = wall_distance_m(model, state, reference.wall, x, lane);
-    if (distance > 1.02 * r) add(reference.wall, distance);
+    if (distance > 1.02 * r) add(wall_normal(model, state, reference.wall, x, lane), distance);
+  }
+  for (int t = 0; t < static_cast<int>(model.tools.size()); ++t) {
+    const MeshFeatures& mesh = tool_features[as_size(t)];
+    const Vec3 in_body = to_body_frame(state, t, x, lane);
+    for (std::size_t f = 0; f < mesh.features.size(); ++f)
+      if (const auto d = feature_distance(mesh, f, in_body, 1.02 * r,
+                                          model.tools[as_size(t)].max_depth_m))
+        add(state.tool_orientation(t, lane) * d->normal, d->distance_m);
   }
 }
 
@@ -130,9 +142,11 @@ double stable_time_step_s(const Model& model, const State& state, int lane) {
               law.bond.bending_scale * b.bending_factor,
               law.bond.twisting_scale * b.twisting_factor},
              0, lane);
+  std::vector<MeshFeatures> tool_features;
+  for (const Tool& tool : model.tools) tool_features.push_back(mesh_features(tool.mesh));
   double dt_s = std::numeric_limits<double>::infinity();
   for (int i = model.num_fixed; i < model.num_particles(); ++i) {
-    add_walls(model, state, sum, i, lane);
+    add_rigid_bodies(model, state, tool_features, sum, i, lane);
     const double m = model.mass_kg[as_size(i)];
     const double r = model.radius_m[as_size(i)];
     const double k = largest_eigenvalue(sum[as_size(i)][0], m, r);

@@ -12,6 +12,8 @@ namespace tilth {
 struct PairRecord;
 struct WallRecord;
 struct BondGeometry;
+struct MeshFeature;
+struct HalfSpace;
 }  // namespace tilth
 
 namespace tilth::lanes {
@@ -24,6 +26,7 @@ enum LawRow : int {
   law_friction,
   law_wall_friction,
   law_rolling_friction,
+  law_tool_friction,
   law_normal_damping,
   law_tangential_damping,
   law_local_damping,
@@ -52,6 +55,13 @@ struct WallView {
   double half_a_m;
   double half_b_m;
   double friction_scale;
+};
+
+/// One tool as the kernel sees it.
+struct ToolView {
+  const MeshFeature* features;
+  const HalfSpace* half_spaces;
+  double max_depth_m;
 };
 
 struct StepView {
@@ -84,6 +94,15 @@ struct StepView {
   const double* walls;          ///< [wall][4][W]
   const double* wall_velocity;  ///< [wall][4][W]: velocity (3), growth of the radius
   double* wall_force;           ///< [wall][6][W]
+  int num_tools;
+  const std::int32_t* tool_row_begin;
+  const std::int32_t* tool_particle;
+  const std::int32_t* tool_feature;
+  const WallRecord* tool_pairs;
+  double* tool_spring_m;
+  const ToolView* tool_views;
+  const double* tool_motion;  ///< [tool][18][W]: position, body axes, velocity, spin
+  double* tool_load;          ///< [tool][7][W]: force, torque about the origin, touching contacts
   double* max_speed2;           ///< [W]
   double* num_broken;           ///< [W]
 };

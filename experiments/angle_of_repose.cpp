@@ -222,10 +222,9 @@ std::vector<ExperimentResult> run_angle_of_repose(std::span<const SoilMaterial> 
   // lanes cost as much as eight runs (docs/experiments/angle_of_repose.md). Wider only if asked for.
   RunOptions own = options;
   if (own.max_lanes == 0) own.max_lanes = 1;
-  return run_in_packs(densities_kg_per_m3(members), own,
-                      [&](std::span<const std::size_t> task_of_lane) {
-                        return run_pack(pick(members, task_of_lane), config, *packing, options);
-                      });
+  return run_members(members, own, [&](std::span<const SoilMaterial> lanes) {
+    return run_pack(lanes, config, *packing, options);
+  });
 }
 
 }  // namespace tilth

@@ -26,10 +26,10 @@ struct OwnStates {
 };
 
 /// Prepares one lane: press with its friction (the loosest state is measured on this very specimen),
-/// lower the friction by 12 % per inertial time (isotropic_compression.hpp) until the void ratio is that of the relative density, give
+/// lower ln(friction) by 0.2 per inertial time (isotropic_compression.hpp) until the void ratio is that of the relative density, give
 /// the friction back, settle. Local damping is 0.2 meanwhile. A specimen that gets no denser without
 /// friction has found its own densest state, which then takes the place of the cloud's. A relative
-/// density off by more than 0.15 fails the lane.
+/// density off by more than 0.25 fails the lane.
 /// @source own choice; friction as the handle on density is common in DEM work
 class DensityPreparation {
  public:
@@ -44,7 +44,7 @@ class DensityPreparation {
 
  private:
   enum class Stage { press, densify, settle };
-  bool densify(LaneRun& run, int lane);
+  bool densify(LaneRun& run, int lane, bool settled);
 
   double relative_density_;
   double own_friction_;
@@ -66,8 +66,8 @@ struct DensestStates {
   double void_ratio_at(double ratio) const;
 };
 
-/// The densest states of a cloud by the procedure above, with friction 0.5.
-DensestStates measure_densest_states(const Packing& cloud, const Vec3& cloud_size_m,
-                                     const RunOptions& options);
+/// The densest states of a cloud by the procedure above, with friction 0.5; measured once per store.
+DensestStates densest_states(PackingStore& packings, const PackingSpec& cloud,
+                             const RunOptions& options);
 
 }  // namespace tilth

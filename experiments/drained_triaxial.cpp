@@ -164,7 +164,8 @@ struct SeriesPoint {
 };
 
 void add_series_features(const std::vector<SeriesPoint>& series, std::vector<Feature>& features) {
-  if (series.size() < 2) return;
+  const auto [low, high] = std::ranges::minmax(series, {}, &SeriesPoint::cell_pressure_Pa);
+  if (!(low.cell_pressure_Pa < high.cell_pressure_Pa)) return;
   std::vector<double> s_Pa, t_Pa, ln_pressure, ln_modulus;
   for (const SeriesPoint& point : series) {
     // q = eta p and p = radial + q / 3 give q from the ratio at constant radial stress.
@@ -256,7 +257,7 @@ std::vector<ExperimentResult> run_drained_triaxial(std::span<const SoilMaterial>
   const auto packing = packings.get(spec);
   DensestStates densest;
   if (is_prepared(config)) {
-    densest = measure_densest_states(*packing, spec.size_m, options);
+    densest = densest_states(packings, spec, options);
     if (densest.status != RunStatus::completed) return all_failed(members.size(), densest);
   }
   std::vector<TriaxialTask> tasks;

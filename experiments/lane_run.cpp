@@ -22,18 +22,27 @@ void note_diverged(LaneRun& run) {
 }
 
 void step_interval(LaneRun& run, int interval_steps) {
-  std::ranges::fill(run.mean_wall_force_N, Vec3::Zero());
+  for (auto* mean : {&run.mean_wall_force_N, &run.mean_tool_force_N, &run.mean_tool_torque_N_m})
+    std::ranges::fill(*mean, Vec3::Zero());
   const int num_walls = static_cast<int>(run.specimen.model.walls.size());
+  const int num_tools = static_cast<int>(run.specimen.model.tools.size());
   for (int n = 0; n < interval_steps; ++n) {
     const StepInfo info = step(run.specimen.model, run.specimen.state, run.workspace);
     for (int w = 0; w < num_walls; ++w)
       for (int lane = 0; lane < run.num_lanes(); ++lane)
         run.mean_wall_force_N[static_cast<std::size_t>(w * run.num_lanes() + lane)] +=
             run.specimen.state.wall_force_N(w, lane);
+    for (int t = 0; t < num_tools; ++t)
+      for (int lane = 0; lane < run.num_lanes(); ++lane) {
+        const auto k = static_cast<std::size_t>(t * run.num_lanes() + lane);
+        run.mean_tool_force_N[k] += run.specimen.state.tool_force_N(t, lane);
+        run.mean_tool_torque_N_m[k] += run.specimen.state.tool_torque_N_m(t, lane);
+      }
     if (info.lane_failed) note_diverged(run);
     if (!info.any_active) break;
   }
-  for (Vec3& f : run.mean_wall_force_N) f /= interval_steps;
+  for (auto* mean : {&run.mean_wall_force_N, &run.mean_tool_force_N, &run.mean_tool_torque_N_m})
+    for (Vec3& f : *mean) f /= interval_steps;
 }
 
 }  // namespace
@@ -41,7 +50,9 @@ void step_interval(LaneRun& run, int interval_steps) {
 LaneRun::LaneRun(Specimen s)
     : specimen(std::move(s)),
       results(specimen.model.lanes.size()),
-      mean_wall_force_N(specimen.model.walls.size() * specimen.model.lanes.size(), Vec3::Zero()) {
+      mean_wall_force_N(specimen.model.walls.size() * specimen.model.lanes.size(), Vec3::Zero()),
+      mean_tool_force_N(specimen.model.tools.size() * specimen.model.lanes.size(), Vec3::Zero()),
+      mean_tool_torque_N_m(mean_tool_force_N) {
   for (int lane = 0; lane < num_lanes(); ++lane)
     results[static_cast<std::size_t>(lane)].dt_s = dt_s(lane);
 }

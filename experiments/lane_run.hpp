@@ -19,11 +19,21 @@ struct LaneRun {
   /// [wall][lane]: force on the wall averaged over the last interval [N].
   std::vector<Vec3> mean_wall_force_N;
 
+  /// [tool][lane]: force on the tool and torque about its origin, averaged likewise.
+  std::vector<Vec3> mean_tool_force_N;
+  std::vector<Vec3> mean_tool_torque_N_m;
+
   explicit LaneRun(Specimen s);
   int num_lanes() const { return specimen.model.num_lanes(); }
   bool active(int lane) const { return specimen.state.active[static_cast<std::size_t>(lane)] != 0; }
   Vec3 wall_force_N(int wall, int lane) const {
     return mean_wall_force_N[static_cast<std::size_t>(wall * num_lanes() + lane)];
+  }
+  Vec3 tool_force_N(int tool, int lane) const {
+    return mean_tool_force_N[static_cast<std::size_t>(tool * num_lanes() + lane)];
+  }
+  Vec3 tool_torque_N_m(int tool, int lane) const {
+    return mean_tool_torque_N_m[static_cast<std::size_t>(tool * num_lanes() + lane)];
   }
   double dt_s(int lane) const { return specimen.model.lanes[static_cast<std::size_t>(lane)].dt_s; }
   double time_s(int lane) const {

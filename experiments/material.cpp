@@ -12,6 +12,7 @@ std::vector<Field> fields(SoilMaterial& m) {
           {"friction", &m.friction, 0, 10},
           {"wall_friction", &m.wall_friction, 0, 10},
           {"rolling_friction", &m.rolling_friction, 0, 2},
+          {"tool_friction", &m.tool_friction, 0, 10},
           {"bond_modulus_Pa", &m.bond.modulus_Pa, 0, 1e12},
           {"bond_stiffness_ratio", &m.bond.stiffness_ratio, 0.1, 100},
           {"bond_tensile_strength_Pa", &m.bond.tensile_strength_Pa, 0, 1e12},
@@ -34,6 +35,7 @@ LaneLaw lane_law(const SoilMaterial& m) {
           .friction = m.friction,
           .wall_friction = m.wall_friction,
           .rolling_friction = m.rolling_friction,
+          .tool_friction = m.tool_friction,
           .local_damping = m.local_damping,
           .bond = bond_law(m.bond)};
 }

@@ -15,6 +15,7 @@ struct SoilMaterial {
   double friction = 0.5;                ///< Coulomb coefficient between grains
   double wall_friction = 0.0;           ///< on platens and boxes: polished and greased
   double rolling_friction = 0.0;        ///< mu_r of unbonded contacts and walls; 0: round grains
+  double tool_friction = 0.3;           ///< on cones and vanes: bare smooth steel (own choice)
   BondMaterial bond{.modulus_Pa = 2e6, .tensile_strength_Pa = 20e3, .cohesion_Pa = 20e3};
   double local_damping = 0.7;           ///< quasi-static tests; alpha of Cundall
   double density_kg_per_m3 = 2650;      ///< of one grain; scales out of tests without gravity

@@ -6,6 +6,7 @@
 
 #include "dem_core/neighbours.hpp"
 #include "dem_core/time_step.hpp"
+#include "dem_core/tool_geometry.hpp"
 #include "dem_core/wall_geometry.hpp"
 
 namespace tilth {
@@ -38,14 +39,28 @@ void add_wall_references(Model& model, const State& state, double mean_radius_m,
   }
 }
 
+void add_tool_references(Model& model, const State& state) {
+  for (int t = 0; t < static_cast<int>(model.tools.size()); ++t) {
+    const Tool& tool = model.tools[as_size(t)];
+    const MeshFeatures mesh = mesh_features(tool.mesh);
+    for (int i = 0; i < model.num_particles(); ++i) {
+      const double r = model.radius_m[as_size(i)];
+      const double distance_m = tool_distance_m(tool, mesh, state.position_m(i), r);
+      if (distance_m < r) model.tool_references.push_back({t, i, distance_m});
+    }
+  }
+}
+
 }  // namespace
 
 Specimen make_specimen(const Packing& packing, std::span<const SoilMaterial> materials,
-                       const std::vector<Wall>& walls, const BondingSpec& bonding) {
+                       const std::vector<Wall>& walls, const BondingSpec& bonding,
+                       const std::vector<Tool>& tools) {
   Specimen s;
   s.mean_radius_m = packing.mean_radius_m;
   s.model.radius_m = packing.radius_m;
   s.model.walls = walls;
+  s.model.tools = tools;
   for (const SoilMaterial& m : materials) s.model.lanes.push_back(lane_law(m));
   // One mass serves all lanes; a member of other density differs only in inertia, which its time
   // step and platen speed scale out, so the first member's density stands for all.
@@ -53,6 +68,7 @@ Specimen make_specimen(const Packing& packing, std::span<const SoilMaterial> mat
   const State placed = initial_state(s.model, packing.position_m);
   add_bonds_and_references(s.model, placed, packing.mean_radius_m, bonding);
   add_wall_references(s.model, placed, packing.mean_radius_m, bonding);
+  add_tool_references(s.model, placed);
   s.state = initial_state(s.model, packing.position_m);
   for (int lane = 0; lane < s.model.num_lanes(); ++lane)
     s.model.lanes[as_size(lane)].dt_s =

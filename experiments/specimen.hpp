@@ -27,8 +27,9 @@ struct Specimen {
 
 /// Lanes = materials (1, 4 or 8 of them). The packing's overlaps carry no force: every touching pair
 /// keeps its distance as reference, every bond its length as rest length, every wall contact its
-/// distance. Time steps: 0.8 of the stable bound of the lane, snapped down to the ladder.
+/// distance, every tool contact likewise. Time steps: 0.8 of the stable bound of the lane, snapped down to the ladder.
 Specimen make_specimen(const Packing& packing, std::span<const SoilMaterial> materials,
-                       const std::vector<Wall>& walls, const BondingSpec& bonding);
+                       const std::vector<Wall>& walls, const BondingSpec& bonding,
+                       const std::vector<Tool>& tools = {});
 
 }  // namespace tilth

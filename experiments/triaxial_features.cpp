@@ -16,7 +16,7 @@ constexpr double peak_half_window = 0.005;
 constexpr double slope_half_window = 0.01;
 constexpr double end_window = 0.02;
 constexpr double least_strain = 0.04;
-constexpr std::size_t least_rows = 20;
+constexpr std::size_t least_rows = 10;
 
 double deviator_Pa(const std::vector<double>& row) { return row[axial_stress] - row[radial_stress]; }
 

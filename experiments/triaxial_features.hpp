@@ -23,7 +23,7 @@ inline const std::vector<std::string> triaxial_columns = {"axial_strain", "volum
 /// - final_volumetric_strain: of the last row
 /// @source the modulus as the secant over 0.5 % is own choice; the averages keep the scatter of a few
 ///         hundred grains from being read as a peak
-/// @return empty when the curve ends before 4 % or has fewer than 20 rows
+/// @return empty when the curve ends before 4 % or has fewer than 10 rows
 std::vector<Feature> triaxial_features(const Curve& curve);
 
 }  // namespace tilth

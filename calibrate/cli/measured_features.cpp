@@ -42,7 +42,7 @@ std::vector<FeaturedCurve> read_features(const SoilData& soil) {
                                      condition.line, condition.id));
     if (found.empty())
       problems.push_back(fmt::format("curves.csv:{}: the curve of '{}' ends before 4 % of axial "
-                                     "strain or has fewer than 20 rows",
+                                     "strain or has fewer than 10 rows",
                                      c.line, c.condition_id));
     if (!density || found.empty()) continue;
     FeaturedCurve f{&c, *condition.number("cell_pressure_Pa"), *density, {}, false};

@@ -10,20 +10,21 @@
 
 #include "calibrate/soil_data.hpp"
 #include "experiments/angle_of_repose.hpp"
+#include "experiments/cone_penetration.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
-#include "experiments/drained_triaxial.hpp"
 #include "experiments/direct_tension.hpp"
+#include "experiments/drained_triaxial.hpp"
 #include "experiments/interface_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
+#include "experiments/vane_shear.hpp"
 
 namespace tilth {
 
 using TestConfig =
     std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
-                 DrainedTriaxialConfig>;
-                 DirectTensionConfig, InterfaceShearConfig>;
-                 AngleOfReposeConfig>;
+                 DrainedTriaxialConfig, DirectTensionConfig, InterfaceShearConfig,
+                 ConePenetrationConfig, VaneShearConfig, AngleOfReposeConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -33,8 +34,6 @@ enum class Fidelity {
 };
 
 /// "unconfined_compression", "direct_shear", ...
-/// "unconfined_compression", "direct_shear", "confined_compression", ...
-/// "unconfined_compression", "direct_shear", "confined_compression", "angle_of_repose".
 std::vector<std::string> virtual_test_ids();
 
 /// Default config of a test at a fidelity. @throws ConfigError naming the known tests

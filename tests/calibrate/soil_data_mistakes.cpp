@@ -337,7 +337,8 @@ TEST_CASE("Mistakes: an unknown soil lists the known ones and the nearest",
     FAIL("an unknown soil was accepted");
   } catch (const ConfigError& error) {
     CHECK(error.sentences() ==
-          std::vector<std::string>{"unknown soil 'loamysand': known are coarse_sand, loamy_sand, "
+          std::vector<std::string>{"unknown soil 'loamysand': known are coarse_sand, "
+                                   "karlsruhe_fine_sand, loamy_sand, "
                                    "sandy_loam; did you mean loamy_sand?"});
   }
 }

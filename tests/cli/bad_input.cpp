@@ -44,7 +44,7 @@ TEST_CASE("Program: wrong flags end with exit code 2 and say which", "[cli][bad_
     CHECK(r.exit_code == exit_bad_input);
     CHECK(r.says({part}));
   };
-  refused({}, "--soil is missing: one of coarse_sand, loamy_sand, sandy_loam");
+  refused({}, "--soil is missing: one of coarse_sand, karlsruhe_fine_sand, loamy_sand, sandy_loam");
   refused({"--sool", "x"}, "--sool");
   refused({"--soil", "loamy_sand", "--threads", "many"}, "--threads");
   refused({"--soil", "loamy_sand", "--lanes", "3"}, "--lanes");
@@ -68,7 +68,7 @@ TEST_CASE("Program: an unknown soil lists the known ones and the nearest", "[cli
   const TempFolder folder("unknown_soil");
   const ProgramRun r = run({"--soil", "loamysand", "--out", folder / "run"});
   CHECK(r.exit_code == exit_bad_input);
-  CHECK(r.says({"unknown soil 'loamysand'", "coarse_sand, loamy_sand, sandy_loam",
+  CHECK(r.says({"unknown soil 'loamysand'", "coarse_sand, karlsruhe_fine_sand, loamy_sand, sandy_loam",
                 "did you mean loamy_sand?"}));
   CHECK_FALSE(std::filesystem::exists(folder / "run"));
   CHECK(run({"--data", folder / "nowhere"}).says({"--data", "nowhere: is not a folder"}));

@@ -131,7 +131,7 @@ TEST_CASE("Export: the json says the same, on standard output or in a folder", "
   CHECK(json["schema"] == "tilth.export/1");
   CHECK(json["seed"] == 17);
   CHECK(json["preview"] == true);
-  CHECK(json["parameters"].size() == 13);
+  CHECK(json["parameters"].size() == 15);
   CHECK(json["parameters"][0]["hi95"] == 5e6);
   CHECK(json["parameters"][1]["lo95"].is_null());
   const std::filesystem::path out = folder.path() / "out";

@@ -24,6 +24,8 @@ inline const std::string card_text = R"card({
     {"name": "stiffness_ratio", "value": 2.5, "lo95": null, "hi95": null, "role": "fixed"}],
   "material": {
     "contact_modulus_Pa": 3e6, "stiffness_ratio": 2.5, "friction": 0.45, "wall_friction": 0.1,
+    "rolling_friction": 0,
+    "tool_friction": 0.3,
     "bond_modulus_Pa": 4e6, "bond_stiffness_ratio": 1.5, "bond_tensile_strength_Pa": 21000,
     "bond_cohesion_Pa": 32000, "bond_friction_angle_rad": 0.35, "bond_radius_multiplier": 0.9,
     "moment_contribution": 0.6, "local_damping": 0.65, "grain_density_kg_per_m3": 2500},

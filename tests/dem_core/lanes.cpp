@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "dem_core/packing.hpp"
+#include "experiments/tool_shapes.hpp"
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
@@ -39,6 +40,8 @@ void check_lane_equals_alone(const State& together, int lane, const State& alone
   CHECK(same(together.bonds, alone.bonds));
   CHECK(same(together.walls, alone.walls));
   CHECK(same(together.wall_force, alone.wall_force));
+  CHECK(same(together.tools, alone.tools));
+  CHECK(same(together.tool_load, alone.tool_load));
   CHECK(together.time_s[static_cast<std::size_t>(lane)] == alone.time_s[0]);
   CHECK(together.active[static_cast<std::size_t>(lane)] == alone.active[0]);
 }
@@ -77,8 +80,9 @@ Scene crushed_cylinder(const std::vector<int>& members) {
   return scene;
 }
 
-/// Grains between plates held at a pressure of their own in each lane, sheared by a moving floor.
-Scene pressed_packing(const std::vector<int>& members) {
+/// Grains between plates held at a pressure of their own in each lane, sheared by a moving floor and,
+/// where asked for, stirred by a cone and a vane that move on their own ways in each lane.
+Scene pressed_packing(const std::vector<int>& members, bool stirred = false) {
   Scene scene;
   PackingSpec spec;
   spec.shape = ContainerShape::box;
@@ -111,7 +115,16 @@ Scene pressed_packing(const std::vector<int>& members) {
     law.wall_friction = 0.5 - 0.05 * members[lane];
     law.contact_stiffness *= 1 + 0.1 * members[lane];
   }
+  if (stirred)
+    scene.model.tools = {{.mesh = cone_mesh(1.0, 3, 2, 6, 9), .position_m = {3, 3, 9}},
+                         {.mesh = vane_mesh(5, 3, 0.2), .position_m = {6, 6, 12}}};
   scene.begin();
+  for (std::size_t lane = 0; stirred && lane < members.size(); ++lane) {
+    scene.model.lanes[lane].tool_friction = 0.1 * members[lane];
+    const double v = 0.6 + 0.1 * members[lane];
+    scene.state.tool_drive(0, static_cast<int>(lane)).velocity_m_per_s = {0, 0, -v};
+    scene.state.tool_drive(1, static_cast<int>(lane)) = {{0, 0, -2 * v}, {0.1 * v, 0, 2 * v}};
+  }
   for (std::size_t lane = 0; lane < members.size(); ++lane) {
     WallDrive& servo = scene.state.drive(lid, static_cast<int>(lane));
     servo.servo_gain_m_per_N_s = 1e-3;
@@ -163,28 +176,43 @@ TEST_CASE("lanes: a crushed cylinder has the same bits alone, in fours and in ei
 
 TEST_CASE("lanes: servo plates, moving walls and slipping grains have the same bits in any width",
           "[dem_core][lanes]") {
-  check_all_lane_counts(pressed_packing);
+  check_all_lane_counts([](const auto& members) { return pressed_packing(members); });
+}
+
+TEST_CASE("lanes: cones and vanes stirring grains have the same bits in any width",
+          "[dem_core][lanes][tools]") {
+  check_all_lane_counts([](const std::vector<int>& members) {
+    Scene scene = pressed_packing(members, true);
+    for (int lane = 0; lane < scene.state.num_lanes; ++lane)
+      for (const int tool : {0, 1}) CHECK(scene.state.num_tool_contacts(tool, lane) > 3);
+    return scene;
+  });
 }
 
 TEST_CASE("lanes: a lane frozen by hand stands still and the others do not notice",
           "[dem_core][lanes]") {
   if (!can_run(4)) return;
   const std::vector<int> members = {0, 1, 2, 3};
-  Scene all = pressed_packing(members);
-  Scene some = pressed_packing(members);
+  Scene all = pressed_packing(members, true);
+  Scene some = pressed_packing(members, true);
   some.state.active[1] = 0;
   model_changed(some.workspace);
   const std::vector<double> motion = one_lane(some.state.motion, 4, 1);
   const std::vector<double> force = one_lane(some.state.wall_force, 4, 1);
+  const std::vector<double> tool_load = one_lane(some.state.tool_load, 4, 1);
+  const std::vector<double> tools = one_lane(some.state.tools, 4, 1);
   const double time_s = some.state.time_s[1];
   all.run(500);
   some.run(500);
   CHECK(one_lane(some.state.motion, 4, 1) == motion);
   CHECK(one_lane(some.state.wall_force, 4, 1) == force);
+  CHECK(one_lane(some.state.tool_load, 4, 1) == tool_load);
+  CHECK(one_lane(some.state.tools, 4, 1) == tools);
   CHECK(some.state.time_s[1] == time_s);
   for (const int lane : {0, 2, 3}) {
     CHECK(one_lane(some.state.motion, 4, lane) == one_lane(all.state.motion, 4, lane));
     CHECK(one_lane(some.state.wall_force, 4, lane) == one_lane(all.state.wall_force, 4, lane));
+    CHECK(one_lane(some.state.tool_load, 4, lane) == one_lane(all.state.tool_load, 4, lane));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "experiments/tool_shapes.hpp"
 #include "tests/support/scene.hpp"
 
 using namespace tilth;
@@ -53,7 +54,10 @@ Scene pressed_clusters() {
   }
   scene.plane(Vec3::UnitZ());
   const int lid = scene.plane(-Vec3::UnitZ(), {0, 0, 12});
+  scene.law().tool_friction = 0.3;
+  scene.model.tools.push_back({.mesh = vane_mesh(4, 2, 0.3), .position_m = {0, 0, 6}});
   scene.begin();
+  scene.state.tool_drive(0, 0) = {{0, 0, -0.5}, {0.2, 0, 1}};
   scene.state.drive(lid, 0) = {
       .servo_gain_m_per_N_s = 1e-2, .target_force_N = 300, .max_speed_m_per_s = 2};
   return scene;
@@ -61,7 +65,8 @@ Scene pressed_clusters() {
 
 bool same_bits(const State& a, const State& b) {
   return a.motion == b.motion && a.bonds == b.bonds && a.walls == b.walls &&
-         a.wall_force == b.wall_force && a.time_s == b.time_s && a.num_steps == b.num_steps &&
+         a.wall_force == b.wall_force && a.tools == b.tools && a.tool_load == b.tool_load &&
+         a.time_s == b.time_s && a.num_steps == b.num_steps &&
          a.active == b.active;
 }
 

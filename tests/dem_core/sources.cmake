@@ -15,6 +15,7 @@ list(APPEND TILTH_TEST_SOURCES
   dem_core/incline.cpp
   dem_core/invariance.cpp
   dem_core/lanes.cpp
+  dem_core/mesh.cpp
   dem_core/model.cpp
   dem_core/neighbours.cpp
   dem_core/packing.cpp
@@ -23,4 +24,5 @@ list(APPEND TILTH_TEST_SOURCES
   dem_core/settled_bed.cpp
   dem_core/snapshot.cpp
   dem_core/time_step.cpp
+  dem_core/tools.cpp
   dem_core/walls.cpp)

@@ -21,6 +21,7 @@ struct NamedTest {
 /// Every test, small and fast; the shear test at two of its normal stresses.
 /// Every test, small and fast: compression at two rates, shear tests at two of their normal stresses
 /// and one of them on a cut block, the oedometer with both loops.
+/// The tests, small and fast; the shear test at two of its normal stresses.
 std::vector<NamedTest> small_tests() {
   return {{"unconfined compression",
            [](auto members, const RunOptions& o) {
@@ -52,16 +53,24 @@ std::vector<NamedTest> small_tests() {
           {"drained triaxial",
            [](auto members, const RunOptions& o) {
              DrainedTriaxialConfig c{.num_particles = 100,
-                                     .cell_pressure_Pa = {20e3, 40e3},
-                                     .relative_density = {0.2, 0.8},
-                                     .inertial_number = 2e-2,
-                                     .max_axial_strain = 0.05};
+                                     .cell_pressure_Pa = {2e3, 4e3},
+                                     .relative_density = {0.0, 0.0},
+                                     .inertial_number = 4e-3,
+                                     .max_axial_strain = 0.08};
              return run_drained_triaxial(members, c, packings(), o);
            }},
           {"confined compression", [](auto members, const RunOptions& o) {
              ConfinedCompressionConfig c = small_confined();
              c.second_load_to_stress_Pa = 150e3;
              return run_confined_compression(members, c, packings(), o);
+             return run_confined_compression(members, small_confined(), packings(), o);
+           }},
+          {"cone penetration",
+           [](auto members, const RunOptions& o) {
+             return run_cone_penetration(members, tiny_cone(), packings(), o);
+           }},
+          {"vane shear", [](auto members, const RunOptions& o) {
+             return run_vane_shear(members, tiny_vane(), packings(), o);
            }}};
 }
 

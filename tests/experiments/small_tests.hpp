@@ -5,11 +5,13 @@
 
 #include <catch2/catch.hpp>
 
+#include "experiments/cone_penetration.hpp"
 #include "experiments/confined_compression.hpp"
 #include "experiments/direct_shear.hpp"
 #include "experiments/direct_tension.hpp"
 #include "experiments/interface_shear.hpp"
 #include "experiments/unconfined_compression.hpp"
+#include "experiments/vane_shear.hpp"
 
 namespace tilth::testing {
 
@@ -40,6 +42,19 @@ inline InterfaceShearConfig small_interface(double speed = 8e-4) {
           .normal_stress_Pa = {10e3, 40e3},
           .slide_speed_over_wave_speed = speed,
           .max_slide_over_length = 0.02};
+}
+
+/// Coarse: for bits, not for numbers.
+inline ConePenetrationConfig tiny_cone() {
+  return {.num_particles = 150,
+          .apex_angle_rad = 1.0,
+          .base_diameter_m = 0.02,
+          .depth_m = 0.01,
+          .speed_m_per_s = 0.2};
+}
+
+inline VaneShearConfig tiny_vane() {
+  return {.num_particles = 150, .tip_speed_over_wave_speed = 3e-3, .max_rotation_rad = 0.15};
 }
 
 /// A bonded soil whose bonds cannot break.
