@@ -6,6 +6,7 @@ list(
   calibrate/emulator.cpp
   calibrate/evaluator.cpp
   calibrate/fit.cpp
+  calibrate/fit_conflicts.cpp
   calibrate/fit_coverage.cpp
   calibrate/fit_failures.cpp
   calibrate/fit_report.cpp
@@ -15,6 +16,7 @@ list(
   calibrate/parameters.cpp
   calibrate/secants.cpp
   calibrate/sobol_design.cpp
+  calibrate/soil_curves.cpp
   calibrate/soil_data_mistakes.cpp
   calibrate/soil_data_rules.cpp
   calibrate/soil_data_shipped.cpp
