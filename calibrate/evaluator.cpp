@@ -21,15 +21,7 @@ bool is_asked(const Target& target, TargetScope scope) {
   return scope == TargetScope::all || target.holdout == (scope == TargetScope::holdouts);
 }
 
-Eigen::MatrixXd columns(const std::vector<std::vector<double>>& points) {
-  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(points.front().size()),
-                         static_cast<Eigen::Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    matrix.col(static_cast<Eigen::Index>(i)) =
-        Eigen::Map<const Eigen::VectorXd>(points[i].data(), matrix.rows());
-  }
-  return matrix;
-}
+std::vector<double> to_vector(const Eigen::VectorXd& point) { return {point.begin(), point.end()}; }
 
 }  // namespace
 
@@ -56,13 +48,19 @@ Evaluator::Evaluator(Simulator simulator, std::vector<Target> targets, std::stri
       scope_(scope) {}
 
 std::vector<Evaluation> Evaluator::evaluate(const Eigen::MatrixXd& parameters, std::uint64_t seed) {
-  const std::vector<Key> keys = new_keys(parameters, seed);
-  if (!keys.empty()) run(keys, seed);
+  return evaluate(parameters,
+                  std::vector<std::uint64_t>(static_cast<std::size_t>(parameters.cols()), seed));
+}
+
+std::vector<Evaluation> Evaluator::evaluate(const Eigen::MatrixXd& parameters,
+                                            std::span<const std::uint64_t> seeds) {
+  const std::vector<Key> keys = new_keys(parameters, seeds);
+  if (!keys.empty()) run(keys);
 
   std::vector<Evaluation> evaluations;
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    const Eigen::VectorXd point = parameters.col(i);
-    const auto known = memory_.find({seed, {point.begin(), point.end()}});
+    const auto known =
+        memory_.find({seeds[static_cast<std::size_t>(i)], to_vector(parameters.col(i))});
     evaluations.push_back(known != memory_.end() ? known->second : Evaluation{});
   }
   return evaluations;
@@ -70,12 +68,11 @@ std::vector<Evaluation> Evaluator::evaluate(const Eigen::MatrixXd& parameters, s
 
 // What must be simulated and may be: unknown, once each, within stop and budget.
 std::vector<Evaluator::Key> Evaluator::new_keys(const Eigen::MatrixXd& parameters,
-                                                std::uint64_t seed) {
+                                                std::span<const std::uint64_t> seeds) {
   std::vector<Key> keys;
   std::set<Key> queued;
   for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
-    const Eigen::VectorXd point = parameters.col(i);
-    Key key{seed, {point.begin(), point.end()}};
+    Key key{seeds[static_cast<std::size_t>(i)], to_vector(parameters.col(i))};
     if (!memory_.contains(key) && queued.insert(key).second) keys.push_back(std::move(key));
   }
   if (keys.empty()) return keys;
@@ -85,10 +82,17 @@ std::vector<Evaluator::Key> Evaluator::new_keys(const Eigen::MatrixXd& parameter
   return keys;
 }
 
-void Evaluator::run(const std::vector<Key>& keys, std::uint64_t seed) {
-  std::vector<std::vector<double>> points;
-  for (const Key& key : keys) points.push_back(key.second);
-  std::vector<Evaluation> evaluations = simulator_(columns(points), seed);
+void Evaluator::run(const std::vector<Key>& keys) {
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(keys.front().second.size()),
+                          static_cast<Eigen::Index>(keys.size()));
+  std::vector<std::uint64_t> seeds;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const auto& [seed, point] = keys[i];
+    seeds.push_back(seed);
+    columns.col(static_cast<Eigen::Index>(i)) =
+        Eigen::Map<const Eigen::VectorXd>(point.data(), columns.rows());
+  }
+  std::vector<Evaluation> evaluations = simulator_(columns, seeds);
   if (evaluations.size() != keys.size()) {
     throw std::runtime_error(fmt::format("the {} simulator returned {} results for {} members",
                                          label_, evaluations.size(), keys.size()));

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,15 +83,20 @@ class Evaluator {
 
   /// One Evaluation per column, in order. A completed run has finite features of the targets in
   /// scope, and positive ones for fitted targets with log_transform; otherwise it is failed.
-  /// @shape parameters (num_parameters, num_members), physical
+  /// All of one call may run side by side.
+  /// @shape parameters (num_parameters, num_members), physical; seeds (num_members)
   /// @throws std::runtime_error if the simulator does not return one Evaluation per column
+  std::vector<Evaluation> evaluate(const Eigen::MatrixXd& parameters,
+                                   std::span<const std::uint64_t> seeds);
+  /// All members on one seed.
   std::vector<Evaluation> evaluate(const Eigen::MatrixXd& parameters, std::uint64_t seed);
 
  private:
   using Key = std::pair<std::uint64_t, std::vector<double>>;
 
-  std::vector<Key> new_keys(const Eigen::MatrixXd& parameters, std::uint64_t seed);
-  void run(const std::vector<Key>& keys, std::uint64_t seed);
+  std::vector<Key> new_keys(const Eigen::MatrixXd& parameters,
+                            std::span<const std::uint64_t> seeds);
+  void run(const std::vector<Key>& keys);
   void check(Evaluation& evaluation) const;
   void book(const Key& key, const Evaluation& evaluation);
 

@@ -111,9 +111,9 @@ Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
                                 const Eigen::VectorXd& unit,
                                 const std::vector<std::uint64_t>& seeds) {
   Eigen::MatrixXd samples(static_cast<Eigen::Index>(context.targets.size()), 0);
-  const Eigen::VectorXd point = physical_point(context.parameters, unit);
-  for (const std::uint64_t seed : seeds) {
-    const Evaluation run = evaluator.evaluate(point, seed).front();
+  const Eigen::MatrixXd points = physical_point(context.parameters, unit)
+                                     .replicate(1, static_cast<Eigen::Index>(seeds.size()));
+  for (const Evaluation& run : evaluator.evaluate(points, seeds)) {
     if (run.status != EvaluationStatus::completed) continue;
     samples.conservativeResize(Eigen::NoChange, samples.cols() + 1);
     samples.rightCols(1) = transformed_features(context.targets, run);

@@ -17,22 +17,27 @@ std::vector<std::optional<Eigen::VectorXd>> average_over_seeds(
     Evaluator& evaluator, std::span<const Parameter> parameters, std::span<const Target> targets,
     const Eigen::MatrixXd& unit_points, std::span<const std::uint64_t> seeds) {
   const Eigen::Index num_points = unit_points.cols();
-  Eigen::MatrixXd physical(static_cast<Eigen::Index>(parameters.size()), num_points);
-  for (Eigen::Index i = 0; i < num_points; ++i) {
-    physical.col(i) = physical_point(parameters, unit_points.col(i));
+  const auto num_seeds = static_cast<Eigen::Index>(seeds.size());
+  Eigen::MatrixXd physical(static_cast<Eigen::Index>(parameters.size()), num_points * num_seeds);
+  std::vector<std::uint64_t> seed_of_column;
+  for (const std::uint64_t seed : seeds) {
+    for (Eigen::Index i = 0; i < num_points; ++i) {
+      physical.col(static_cast<Eigen::Index>(seed_of_column.size())) =
+          physical_point(parameters, unit_points.col(i));
+      seed_of_column.push_back(seed);
+    }
   }
+  const std::vector<Evaluation> runs = evaluator.evaluate(physical, seed_of_column);
 
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(targets.size()));
   std::vector<std::optional<Eigen::VectorXd>> means(static_cast<std::size_t>(num_points), zero);
-  for (const std::uint64_t seed : seeds) {
-    const std::vector<Evaluation> runs = evaluator.evaluate(physical, seed);
-    for (std::size_t i = 0; i < means.size(); ++i) {
-      if (!means[i]) continue;
-      if (runs[i].status != EvaluationStatus::completed) {
-        means[i].reset();
-      } else {
-        *means[i] += transformed_features(targets, runs[i]) / static_cast<double>(seeds.size());
-      }
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    std::optional<Eigen::VectorXd>& mean = means[k % means.size()];
+    if (!mean) continue;
+    if (runs[k].status != EvaluationStatus::completed) {
+      mean.reset();
+    } else {
+      *mean += transformed_features(targets, runs[k]) / static_cast<double>(seeds.size());
     }
   }
   return means;

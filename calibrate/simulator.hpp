@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,10 +30,10 @@ struct Evaluation {
 ///
 /// @shape parameters (num_parameters, num_members): physical, one column per member, all
 ///        parameters including the fixed ones, in table order
-/// @param seed the packing (random state) shared by all members of the batch
+/// @shape seeds (num_members): the packing (random state) of each member
 /// @return one Evaluation per column. Must be a pure function of (column, seed): the companions
 ///         and the number of threads may not change a bit. It may throw only if the machine fails.
-using Simulator =
-    std::function<std::vector<Evaluation>(const Eigen::MatrixXd& parameters, std::uint64_t seed)>;
+using Simulator = std::function<std::vector<Evaluation>(const Eigen::MatrixXd& parameters,
+                                                        std::span<const std::uint64_t> seeds)>;
 
 }  // namespace tilth

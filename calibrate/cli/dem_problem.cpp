@@ -25,6 +25,28 @@ void check_setup(const TestConfig& config, const TestCondition& condition) {
 /// Results of all tests, [test][member].
 using TestResults = std::vector<std::vector<ExperimentResult>>;
 
+/// The members of one packing: they share its lanes.
+struct SeedGroup {
+  std::uint64_t seed = 0;
+  std::vector<std::size_t> columns;
+  std::vector<SoilMaterial> materials;
+};
+
+std::vector<SeedGroup> groups_of(const SoilData& soil, const Eigen::MatrixXd& parameters,
+                                 std::span<const std::uint64_t> seeds) {
+  std::vector<SeedGroup> groups;
+  for (std::size_t m = 0; m < seeds.size(); ++m) {
+    auto group = std::ranges::find(groups, seeds[m], &SeedGroup::seed);
+    if (group == groups.end()) {
+      groups.push_back({seeds[m], {}, {}});
+      group = groups.end() - 1;
+    }
+    group->columns.push_back(m);
+    group->materials.push_back(material_of(soil, parameters.col(static_cast<Eigen::Index>(m))));
+  }
+  return groups;
+}
+
 Evaluation evaluation_of(const std::vector<PlannedTest>& tests, const TestResults& results,
                          std::size_t member, std::size_t num_targets) {
   Evaluation e;
@@ -95,21 +117,26 @@ RunOptions run_options(const RunContext& context) {
 
 Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
                         TargetScope scope) {
-  return [&soil, &context, tests = plan_tests(soil, fidelity, scope)](const Eigen::MatrixXd& parameters,
-                                                               std::uint64_t seed) {
-    std::vector<SoilMaterial> members;
-    for (Eigen::Index m = 0; m < parameters.cols(); ++m)
-      members.push_back(material_of(soil, parameters.col(m)));
+  return [&soil, &context, tests = plan_tests(soil, fidelity, scope)](
+             const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
+    const std::vector<SeedGroup> groups = groups_of(soil, parameters, seeds);
     const RunOptions options = run_options(context);
-    TestResults results(tests.size());
-    parallel_for_each_index(tests.size(), context.num_threads, [&](std::size_t t) {
+    std::vector<TestResults> results(groups.size(), TestResults(tests.size()));
+    // Every test on every packing is a task of its own: one member on several seeds fills the
+    // threads as well as several members on one.
+    parallel_for_each_index(groups.size() * tests.size(), context.num_threads, [&](std::size_t k) {
+      const SeedGroup& group = groups[k / tests.size()];
+      const std::size_t t = k % tests.size();
       TestConfig config = tests[t].config;
-      set_packing_seed(config, seed);
-      results[t] = run_virtual_test(config, members, context.packings, options);
+      set_packing_seed(config, group.seed);
+      results[k / tests.size()][t] =
+          run_virtual_test(config, group.materials, context.packings, options);
     });
-    std::vector<Evaluation> evaluations;
-    for (std::size_t m = 0; m < members.size(); ++m)
-      evaluations.push_back(evaluation_of(tests, results, m, soil.targets.size()));
+    std::vector<Evaluation> evaluations(seeds.size());
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (std::size_t m = 0; m < groups[g].columns.size(); ++m)
+        evaluations[groups[g].columns[m]] =
+            evaluation_of(tests, results[g], m, soil.targets.size());
     return evaluations;
   };
 }

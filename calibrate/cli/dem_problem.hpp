@@ -41,7 +41,7 @@ struct RunContext {
 /// RunOptions whose packs run side by side on the context's threads.
 RunOptions run_options(const RunContext& context);
 
-/// Simulator over the planned tests: features in target order, one packing seed per call. A member
+/// Simulator over the planned tests: features in target order, members of one seed in the same packs. A member
 /// fails with the first failing test's reason; targets out of scope are NaN. Soil and context must
 /// outlive it.
 Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,

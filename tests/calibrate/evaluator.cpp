@@ -15,7 +15,7 @@ namespace {
 std::vector<Target> one_target() { return {log_target("y_Pa", 1.0, 0.1)}; }
 
 Simulator counting(int& num_columns) {
-  return [&num_columns](const Eigen::MatrixXd& parameters, std::uint64_t) {
+  return [&num_columns](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t>) {
     std::vector<Evaluation> runs;
     for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
       ++num_columns;
@@ -75,7 +75,8 @@ TEST_CASE("Evaluator: a wrong number of features fails, of results throws",
   Evaluator wide(simulator_of([](const Eigen::VectorXd&) { return Eigen::VectorXd::Ones(3); }),
                  one_target(), "search", ledger);
   REQUIRE(wide.evaluate(Eigen::MatrixXd::Ones(1, 1), 1).front().status == EvaluationStatus::failed);
-  Evaluator silent([](const Eigen::MatrixXd&, std::uint64_t) { return std::vector<Evaluation>{}; },
+  Evaluator silent([](const Eigen::MatrixXd&,
+                      std::span<const std::uint64_t>) { return std::vector<Evaluation>{}; },
                    one_target(), "search", ledger);
   REQUIRE_THROWS_AS(silent.evaluate(Eigen::MatrixXd::Ones(1, 1), 1), std::runtime_error);
 }

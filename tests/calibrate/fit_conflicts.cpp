@@ -27,7 +27,7 @@ Target target(const std::string& name, double value, bool holdout = false) {
 
 /// Every feature is the parameter itself; those not asked for are NaN.
 Simulator identity(std::vector<bool> asked) {
-  return [asked](const Eigen::MatrixXd& p, std::uint64_t) {
+  return [asked](const Eigen::MatrixXd& p, std::span<const std::uint64_t>) {
     std::vector<Evaluation> runs;
     for (Eigen::Index m = 0; m < p.cols(); ++m) {
       Evaluation e;
@@ -76,9 +76,9 @@ TEST_CASE("Fit: values within two sigma of a common point are no conflict", "[ca
 TEST_CASE("Fit: hold-outs of their own simulator are never asked of the others, and get intervals",
           "[calibrate][fit]") {
   int num_holdout_runs = 0;
-  const Simulator holdout = [&](const Eigen::MatrixXd& p, std::uint64_t seed) {
+  const Simulator holdout = [&](const Eigen::MatrixXd& p, std::span<const std::uint64_t> seeds) {
     num_holdout_runs += static_cast<int>(p.cols());
-    return identity({false, true})(p, seed);
+    return identity({false, true})(p, seeds);
   };
   const std::vector<Target> targets = {target("x/fitted", 5.0), target("y/held", 6.0, true)};
   const FitSummary s = fit(one_parameter, targets, identity({true, false}), nullptr, noiseless(),

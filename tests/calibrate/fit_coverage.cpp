@@ -42,10 +42,11 @@ std::array<int, 3> count_hits(bool noise_is_common) {
   std::array<int, 3> hits = {0, 0, 0};
   for (std::uint64_t stream = 1000; stream < 1000 + num_twins; ++stream) {
     const Simulator own = simulator_of(soil_formula, noise, stream);
-    const Simulator common = [stream](const Eigen::MatrixXd& parameters, std::uint64_t seed) {
-      std::vector<Evaluation> runs = simulator_of(soil_formula)(parameters, seed);
-      const double factor = std::exp(noise * normal_number(stream, seed, 0));
-      for (Evaluation& run : runs) run.features *= factor;
+    const Simulator common = [stream](const Eigen::MatrixXd& parameters,
+                                              std::span<const std::uint64_t> seeds) {
+      std::vector<Evaluation> runs = simulator_of(soil_formula)(parameters, seeds);
+      for (std::size_t i = 0; i < runs.size(); ++i)
+        runs[i].features *= std::exp(noise * normal_number(stream, seeds[i], 0));
       return runs;
     };
     const FitSummary summary = fit(soil_parameters(), soil_targets(sigma, stream),

@@ -38,9 +38,10 @@ inline double normal_number(std::uint64_t stream, std::uint64_t seed, std::uint6
 /// Completed runs of a formula. A packing multiplies feature k by exp(noise * normal number): the
 /// same for all parameter sets on that seed, as a packing does.
 inline Simulator simulator_of(Formula formula, double noise = 0.0, std::uint64_t stream = 0) {
-  return [=](const Eigen::MatrixXd& parameters, std::uint64_t seed) {
+  return [=](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
     std::vector<Evaluation> runs;
     for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
+      const std::uint64_t seed = seeds[static_cast<std::size_t>(i)];
       Eigen::VectorXd features = formula(parameters.col(i));
       for (Eigen::Index k = 0; noise > 0.0 && k < features.size(); ++k) {
         features[k] *= std::exp(noise * normal_number(stream, seed, static_cast<std::uint64_t>(k)));
@@ -53,8 +54,8 @@ inline Simulator simulator_of(Formula formula, double noise = 0.0, std::uint64_t
 
 /// The same, but runs for which `fails` says yes are failed.
 inline Simulator failing(Simulator inner, std::function<bool(const Eigen::VectorXd&)> fails) {
-  return [=](const Eigen::MatrixXd& parameters, std::uint64_t seed) {
-    std::vector<Evaluation> runs = inner(parameters, seed);
+  return [=](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
+    std::vector<Evaluation> runs = inner(parameters, seeds);
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (!fails(parameters.col(static_cast<Eigen::Index>(i)))) continue;
       runs[i] = {EvaluationStatus::failed, {}, "the packing exploded"};

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -69,7 +70,7 @@ Eigen::MatrixXd measure(const SoilData& soil, const TwinSpec& spec, const RunCon
   const Eigen::VectorXd truth = truth_values(soil, spec.truth);
   Eigen::MatrixXd samples(static_cast<Eigen::Index>(targets.size()), spec.num_data_packings);
   for (int n = 0; n < spec.num_data_packings; ++n) {
-    const Evaluation run = laboratory(truth, first_data_seed + static_cast<std::uint64_t>(n)).front();
+    const Evaluation run = laboratory(truth, std::array{first_data_seed + static_cast<std::uint64_t>(n)}).front();
     if (run.status != EvaluationStatus::completed)
       throw std::runtime_error("the truth itself fails: " + run.message);
     for (std::size_t k = 0; k < targets.size(); ++k)
