@@ -29,6 +29,7 @@ forbid("(dem_core|experiments)/" IN calibrate/*.hpp calibrate/*.cpp EXCEPT "^cal
 forbid("dem_core/(pack|[a-z0-9_]+_kernel)\\.hpp" IN ${all} EXCEPT "^dem_core/[a-z0-9_]+(\\.cpp|_kernel\\.hpp)$")
 forbid("ceres/" IN ${all} EXCEPT "^calibrate/optimise_ceres\\.cpp$")
 forbid("nlopt" IN ${all} EXCEPT "^calibrate/optimise_nlopt\\.cpp$")
+forbid("(sqlite3|SQLiteCpp)" IN ${all} EXCEPT "^calibrate/run_store\\.cpp$")
 forbid("nlohmann/" IN ${all} EXCEPT "_json\\.cpp$")
 forbid("(tbb|oneapi)/" IN ${all} EXCEPT "^calibrate/parallel\\.cpp$")
 forbid("((CLI|spdlog)/|iostream)" IN ${all} EXCEPT "^calibrate/cli/")

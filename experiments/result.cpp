@@ -15,6 +15,7 @@ const char* name_of(RunStatus status) {
     case RunStatus::diverged: return "diverged";
     case RunStatus::not_settled: return "not_settled";
     case RunStatus::stopped: return "stopped";
+    case RunStatus::lost: return "lost";
   }
   return "unknown";
 }

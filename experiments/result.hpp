@@ -13,7 +13,8 @@ enum class RunStatus {
   completed,    ///< all stages reached their end, all numbers finite
   diverged,     ///< a grain moved more than a quarter radius in one step, or numbers left the reals
   not_settled,  ///< a stage did not reach its state within its step limit
-  stopped       ///< asked to stop from outside
+  stopped,      ///< asked to stop from outside
+  lost          ///< its process crashed or hung each time it was tried; set by who started it
 };
 
 /// "completed", "diverged", ...

@@ -9,14 +9,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iostream>
-#include <thread>
 
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/fit_card.hpp"
 #include "calibrate/cli/fit_output.hpp"
-#include "calibrate/cli/interrupt.hpp"
 #include "calibrate/cli/progress_display.hpp"
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
@@ -25,7 +22,6 @@
 #include "calibrate/fit.hpp"
 #include "calibrate/fit_report.hpp"
 #include "calibrate/soil_fit.hpp"
-#include "dem_core/step.hpp"
 
 namespace tilth {
 namespace {
@@ -78,6 +74,7 @@ FitJob read_job(const FitCommandOptions& o) {
   job.options = o.quick ? quick_fit_options() : FitOptions{};
   job.options.seed = o.seed;
   job.options.force = o.force;
+  if (o.max_runs > 0) job.options.max_simulations = o.max_runs;
   for (const char* name : {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv"})
     job.inputs.push_back(folder / name);
   if (!o.config.empty()) {
@@ -88,7 +85,8 @@ FitJob read_job(const FitCommandOptions& o) {
     job.search = Fidelity::preview;
     job.confirm = Fidelity::search;
   }
-  const std::vector<std::string> wrong = problems(job.options);
+  std::vector<std::string> wrong = problems(o.session);
+  for (const std::string& p : problems(job.options)) wrong.push_back(p);
   if (!wrong.empty()) throw ConfigError(wrong);
   (void)material_of(job.soil, nominal_values(job.soil));
   return job;
@@ -105,8 +103,8 @@ void show_ties(const SoilData& soil, FitSummary& summary) {
   }
 }
 
-void write_results(const FitJob& job, const FitSummary& summary, FitCardContext& card,
-                   const RunContext& context, const std::filesystem::path& folder,
+void write_results(const FitJob& job, const FitSummary& summary, const FitCardContext& card,
+                   const RunSession& session, const std::filesystem::path& folder,
                    spdlog::logger& log) {
   const ReportContext report{card.provenance_sentence +
                              (card.quick ? "\nPREVIEW (--quick): small, fast specimens and few "
@@ -114,10 +112,11 @@ void write_results(const FitJob& job, const FitSummary& summary, FitCardContext&
                                          : "")};
   write_file(folder / "fit.json", fit_card_json(job.soil, summary, card));
   write_file(folder / "fit_report.txt", fit_report_text(summary, report));
-  if (!summary.is_usable() || interrupt_flag().load()) return;
+  if (!summary.is_usable() || session.should_stop()) return;
   log.info("drawing curves at the fitted values");
   for (const std::string& sentence : write_curves_and_figures(
-           job.soil, summary, job.search, job.confirm, job.options.seed + 3000, context, folder))
+           job.soil, summary, job.search, job.confirm, job.options.seed + 3000, session.context(),
+           folder))
     log.warn(sentence);
 }
 
@@ -139,58 +138,74 @@ void add_fit_options(CLI::App& app, FitCommandOptions& o) {
   app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
       ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
-  app.add_option("--out", o.out, "run folder (default runs/<soil>-<n>)");
   app.add_option("--seed", o.seed, "first packing seed (default 1)")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--threads", o.num_threads, "threads (default: all processors)")
-      ->check(CLI::Range(0, 1024));
-  app.add_option("--lanes", o.max_lanes, "at most this many parameter sets per pack: 1, 4 or 8")
-      ->check(CLI::IsMember({0, 1, 4, 8}));
+  app.add_option("--max-runs", o.max_runs,
+                 "end after this many runs (parameter sets times packings), those of the store included")
+      ->check(CLI::PositiveNumber);
+  add_session_options(app, o.session);
   app.add_flag("--quick", o.quick, "a labelled preview: small specimens, few packings");
   app.add_flag("--force", o.force, "fit even with more free parameters than observations");
 }
 
+namespace {
+
+/// The command that gives this result, without what does not influence it.
+std::string reproducing_command(const FitCommandOptions& o) {
+  std::string text = o.soil_folder.empty() ? "calibrate --soil " + o.soil
+                                           : "calibrate --data " + o.soil_folder;
+  if (!o.config.empty()) text += " --config " + o.config;
+  text += fmt::format(" --seed {}", o.seed);
+  if (o.max_runs > 0) text += fmt::format(" --max-runs {}", o.max_runs);
+  if (o.quick) text += " --quick";
+  if (o.force) text += " --force";
+  return text;
+}
+
+void say_end(const RunSession& session, spdlog::logger& log) {
+  const BrokerCounts& c = session.counts();
+  log.info("{} tests simulated, {} taken from the store, {} started again", c.num_simulated,
+           c.num_from_store, c.num_retries);
+  if (session.should_stop())
+    log.warn("{}: the report says what is known so far; go on with --resume", session.stop_reason());
+}
+
+}  // namespace
+
 int run_fit(const FitCommandOptions& o, const std::string& command_line) {
-  // 1. read and check everything, then make the folder
-  const auto start = std::chrono::steady_clock::now();
+  // 1. read and check everything, then open the folder
   FitJob job = read_job(o);
   refuse_what_fit_refuses(job);
-  const std::atomic<bool>& stop = interrupt_flag();
-  const std::filesystem::path folder = make_run_folder(o.out, job.soil.id);
-  const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  spdlog::logger log = make_log(folder, terminal);
+  const FitCardContext card{.seed = o.seed,
+                            .quick = o.quick,
+                            .provenance_sentence = provenance_sentence(job.soil),
+                            .measured_share = measured_share(job.soil.targets),
+                            .search = job.search,
+                            .confirm = job.confirm,
+                            .command = reproducing_command(o),
+                            .inputs = job.inputs,
+                            .criterion = criterion_text(job.options)};
+  const std::filesystem::path folder =
+      open_run_folder(o.session, job.soil.id, run_config_json(job.soil, job.options, card));
+  const RunSession session(o.session, folder);
 
   // 2. say what will be done
-  const int threads = o.num_threads > 0
-                          ? o.num_threads
-                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  PackingStore packings(default_packing_folder());
-  const RunContext context{packings, threads, o.max_lanes, &stop};
-  FitCardContext card{.seed = o.seed,
-                      .quick = o.quick,
-                      .provenance_sentence = provenance_sentence(job.soil),
-                      .measured_share = measured_share(job.soil.targets),
-                      .search = job.search,
-                      .confirm = job.confirm,
-                      .num_threads = threads,
-                      .num_lanes = o.max_lanes > 0 ? o.max_lanes : widest_lanes(),
-                      .command = command_line,
-                      .inputs = job.inputs,
-                      .criterion = criterion_text(job.options)};
-  write_file(folder / "config.json", run_config_json(job.soil, job.options, card));
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  spdlog::logger log = make_log(folder, terminal);
   log.info("{}: {}", job.soil.name, card.provenance_sentence);
   for (const std::string& w : job.soil.warnings) log.warn(w);
-  log.info("fitting {} parameters on {} threads, {} parameter sets per pack, into {}",
-           num_free_parameters(job.soil.parameters), threads, card.num_lanes, folder.string());
+  if (const std::string note = session.store_note(); !note.empty()) log.warn(note);
+  log.info("fitting {} parameters with {} workers into {}",
+           num_free_parameters(job.soil.parameters), session.num_workers(), folder.string());
 
   // 3. fit
   ProgressDisplay display(terminal, [&log](const std::string& line) { log.info(line); });
   job.options.progress = [&display](const Progress& p) { display.show(p); };
-  job.options.should_stop = [&stop] { return stop.load(); };
+  job.options.should_stop = [&session] { return session.should_stop(); };
   using enum TargetScope;
-  const Simulator search = dem_simulator(job.soil, job.search, context, fitted);
-  const Simulator confirm = dem_simulator(job.soil, job.confirm, context, fitted);
-  const Simulator holdout = dem_simulator(job.soil, job.confirm, context, holdouts);
+  const Simulator search = dem_simulator(job.soil, job.search, session.context(), fitted);
+  const Simulator confirm = dem_simulator(job.soil, job.confirm, session.context(), fitted);
+  const Simulator holdout = dem_simulator(job.soil, job.confirm, session.context(), holdouts);
   const bool has_holdouts = std::ranges::any_of(job.soil.targets, &SoilTarget::holdout);
   FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
                            job.options, has_holdouts ? &holdout : nullptr);
@@ -198,9 +213,9 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   if (!summary.parameters.empty()) show_ties(job.soil, summary);
 
   // 4. write
-  card.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_results(job, summary, card, context, folder, log);
+  write_results(job, summary, card, session, folder, log);
+  write_file(folder / "timing.json", session.timing_json(command_line));
+  say_end(session, log);
   log.info(summary.brief_report());
   std::cout << card.provenance_sentence << '\n';
   for (const FittedParameter& p : summary.parameters)
@@ -208,7 +223,7 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
       std::cout << fmt::format("{:<28} {:>12.5g}   95 % [{:.4g}, {:.4g}]   {}\n", p.name, p.value,
                                p.lo95, p.hi95, to_string(p.verdict));
   std::cout << fmt::format("results: {} ({} s)\n", folder.string(),
-                           static_cast<int>(card.seconds + 0.5));
+                           static_cast<int>(session.seconds() + 0.5));
   return exit_code_of(summary);
 }
 

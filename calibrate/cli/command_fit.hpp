@@ -7,16 +7,17 @@
 #include <cstdint>
 #include <string>
 
+#include "calibrate/cli/run_session.hpp"
+
 namespace tilth {
 
 struct FitCommandOptions {
   std::string soil;
   std::string soil_folder;  ///< --data: a folder in the soil format, instead of --soil
   std::string config;
-  std::string out;
+  SessionOptions session;
   std::uint64_t seed = 1;
-  int num_threads = 0;  ///< 0: all processors
-  int max_lanes = 0;    ///< 0: what the processor offers
+  std::size_t max_runs = 0;  ///< parameter sets times packings; 0: as the fit options say
   bool quick = false;
   bool force = false;
 };

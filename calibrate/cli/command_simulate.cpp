@@ -110,13 +110,12 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   const RunContext context{packings, threads, 0, &interrupt_flag()};
   std::vector<std::uint64_t> seeds;
   for (int k = 0; k < o.num_seeds; ++k) seeds.push_back(o.seed + static_cast<std::uint64_t>(k));
-  std::vector<ExperimentResult> results(seeds.size());
-  parallel_for_each_index(seeds.size(), threads, [&](std::size_t k) {
-    TestConfig own = config;
-    set_packing_seed(own, seeds[k]);
-    const SoilMaterial members[] = {material};
-    results[k] = run_virtual_test(own, members, packings, run_options(context)).front();
-  });
+  std::vector<TestRun> runs;
+  for (const std::uint64_t seed : seeds) {
+    runs.push_back({config, "", material});
+    set_packing_seed(runs.back().config, seed);
+  }
+  const std::vector<ExperimentResult> results = run_tests(runs, context);
 
   write_file(folder / "result.json",
              simulation_json(config, material, seeds, results, command_line));

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "calibrate/config_error.hpp"
-#include "calibrate/parallel.hpp"
 #include "calibrate/soil_fit.hpp"
 
 namespace tilth {
@@ -22,38 +22,14 @@ void check_setup(const TestConfig& config, const TestCondition& condition) {
   if (!found.empty()) throw ConfigError(std::move(found));
 }
 
-/// Results of all tests, [test][member].
-using TestResults = std::vector<std::vector<ExperimentResult>>;
-
-/// The members of one packing: they share its lanes.
-struct SeedGroup {
-  std::uint64_t seed = 0;
-  std::vector<std::size_t> columns;
-  std::vector<SoilMaterial> materials;
-};
-
-std::vector<SeedGroup> groups_of(const SoilData& soil, const Eigen::MatrixXd& parameters,
-                                 std::span<const std::uint64_t> seeds) {
-  std::vector<SeedGroup> groups;
-  for (std::size_t m = 0; m < seeds.size(); ++m) {
-    auto group = std::ranges::find(groups, seeds[m], &SeedGroup::seed);
-    if (group == groups.end()) {
-      groups.push_back({seeds[m], {}, {}});
-      group = groups.end() - 1;
-    }
-    group->columns.push_back(m);
-    group->materials.push_back(material_of(soil, parameters.col(static_cast<Eigen::Index>(m))));
-  }
-  return groups;
-}
-
-Evaluation evaluation_of(const std::vector<PlannedTest>& tests, const TestResults& results,
-                         std::size_t member, std::size_t num_targets) {
+/// @param results  one per test
+Evaluation evaluation_of(const std::vector<PlannedTest>& tests,
+                         std::span<const ExperimentResult> results, std::size_t num_targets) {
   Evaluation e;
   e.features = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(num_targets),
                                          std::numeric_limits<double>::quiet_NaN());
   for (std::size_t t = 0; t < tests.size(); ++t) {
-    const ExperimentResult& r = results[t][member];
+    const ExperimentResult& r = results[t];
     if (r.status != RunStatus::completed) {
       const bool stopped = r.status == RunStatus::stopped;
       return {stopped ? EvaluationStatus::skipped : EvaluationStatus::failed,
@@ -105,38 +81,23 @@ SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values) {
   return material;
 }
 
-RunOptions run_options(const RunContext& context) {
-  RunOptions options;
-  options.max_lanes = context.max_lanes;
-  options.stop = context.stop;
-  options.for_each = [n = context.num_threads](std::size_t count, const auto& body) {
-    parallel_for_each_index(count, n, body);
-  };
-  return options;
-}
-
 Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
                         TargetScope scope) {
   return [&soil, &context, tests = plan_tests(soil, fidelity, scope)](
              const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
-    const std::vector<SeedGroup> groups = groups_of(soil, parameters, seeds);
-    const RunOptions options = run_options(context);
-    std::vector<TestResults> results(groups.size(), TestResults(tests.size()));
-    // Every test on every packing is a task of its own: one member on several seeds fills the
-    // threads as well as several members on one.
-    parallel_for_each_index(groups.size() * tests.size(), context.num_threads, [&](std::size_t k) {
-      const SeedGroup& group = groups[k / tests.size()];
-      const std::size_t t = k % tests.size();
-      TestConfig config = tests[t].config;
-      set_packing_seed(config, group.seed);
-      results[k / tests.size()][t] =
-          run_virtual_test(config, group.materials, context.packings, options);
-    });
-    std::vector<Evaluation> evaluations(seeds.size());
-    for (std::size_t g = 0; g < groups.size(); ++g)
-      for (std::size_t m = 0; m < groups[g].columns.size(); ++m)
-        evaluations[groups[g].columns[m]] =
-            evaluation_of(tests, results[g], m, soil.targets.size());
+    std::vector<TestRun> runs;
+    for (std::size_t m = 0; m < seeds.size(); ++m) {
+      const SoilMaterial material = material_of(soil, parameters.col(static_cast<Eigen::Index>(m)));
+      for (const PlannedTest& test : tests) {
+        runs.push_back({test.config, test.condition_id, material});
+        set_packing_seed(runs.back().config, seeds[m]);
+      }
+    }
+    const std::vector<ExperimentResult> results = run_tests(runs, context);
+    std::vector<Evaluation> evaluations;
+    for (std::size_t m = 0; m < seeds.size(); ++m)
+      evaluations.push_back(evaluation_of(
+          tests, std::span(results).subspan(m * tests.size(), tests.size()), soil.targets.size()));
     return evaluations;
   };
 }

@@ -3,9 +3,7 @@
 // The junction: a soil's tables become a fit problem whose simulator runs virtual tests.
 #pragma once
 
-#include <atomic>
-
-#include "calibrate/cli/virtual_test.hpp"
+#include "calibrate/cli/test_runs.hpp"
 #include "calibrate/evaluator.hpp"
 #include "calibrate/simulator.hpp"
 
@@ -29,17 +27,6 @@ std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity,
 /// Material of one parameter column (SoilData::parameters order), ties applied.
 /// @throws ConfigError if a parameter of the table is not one of the model
 SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values);
-
-/// What runs share: packings, threads, the stop flag.
-struct RunContext {
-  PackingStore& packings;
-  int num_threads = 1;
-  int max_lanes = 0;
-  const std::atomic<bool>* stop = nullptr;
-};
-
-/// RunOptions whose packs run side by side on the context's threads.
-RunOptions run_options(const RunContext& context);
 
 /// Simulator over the planned tests: features in target order, members of one seed in the same packs. A member
 /// fails with the first failing test's reason; targets out of scope are NaN. Soil and context must

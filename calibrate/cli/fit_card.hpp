@@ -13,8 +13,8 @@
 
 namespace tilth {
 
-/// What the card says beside the summary. `timing` and `reproduction` are the only parts that differ
-/// between runs of the same command and seed.
+/// What the card says beside the summary. Nothing here depends on the machine or on how often the
+/// run was interrupted: the card of a command and seed is always the same, byte for byte.
 struct FitCardContext {
   std::uint64_t seed = 1;
   bool quick = false;
@@ -22,9 +22,6 @@ struct FitCardContext {
   double measured_share = 0.0;
   Fidelity search = Fidelity::search;
   Fidelity confirm = Fidelity::confirm;
-  double seconds = 0.0;
-  int num_threads = 1;
-  int num_lanes = 1;
   std::string command;
   std::vector<std::filesystem::path> inputs;
   std::string criterion;  ///< the hold-out pass mark, as written before the fit

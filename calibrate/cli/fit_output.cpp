@@ -11,7 +11,6 @@
 #include "calibrate/cli/figures.hpp"
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/triaxial_figures.hpp"
-#include "calibrate/parallel.hpp"
 #include "calibrate/soil_fit.hpp"
 
 namespace tilth {
@@ -44,13 +43,13 @@ std::vector<Rerun> reruns(const SoilData& soil, const SoilMaterial& material, Fi
   plan(confirm, first_seed);
   plan(search, first_seed);
   plan(search, first_seed + 1);
-  const RunOptions options = run_options(context);
-  parallel_for_each_index(runs.size(), context.num_threads, [&](std::size_t k) {
-    set_packing_seed(runs[k].test.config, runs[k].seed);
-    const SoilMaterial members[] = {material};
-    runs[k].result =
-        run_virtual_test(runs[k].test.config, members, context.packings, options).front();
-  });
+  std::vector<TestRun> wanted;
+  for (Rerun& run : runs) {
+    set_packing_seed(run.test.config, run.seed);
+    wanted.push_back({run.test.config, run.test.condition_id, material});
+  }
+  std::vector<ExperimentResult> results = run_tests(wanted, context);
+  for (std::size_t k = 0; k < runs.size(); ++k) runs[k].result = std::move(results[k]);
   return runs;
 }
 

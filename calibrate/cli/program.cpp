@@ -11,6 +11,7 @@
 #include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_simulate.hpp"
+#include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/tool_info.hpp"
 #include "calibrate/config_error.hpp"
@@ -41,6 +42,7 @@ int run_program(int argc, const char* const* argv) {
   SimulateOptions simulate_options;
   ExportOptions export_options;
   FeaturesOptions features_options;
+  WorkerOptions worker_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -51,6 +53,9 @@ int run_program(int argc, const char* const* argv) {
   CLI::App* features =
       app.add_subcommand("features", "rows of measurements.csv from measured curves");
   add_features_options(*features, features_options);
+  CLI::App* worker = app.add_subcommand("worker", "simulations on request, line by line");
+  worker->group("");  // not for people
+  add_worker_options(*worker, worker_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -63,6 +68,7 @@ int run_program(int argc, const char* const* argv) {
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
     if (features->parsed()) return run_features(features_options);
     if (exporting->parsed()) return run_export(export_options);
+    if (worker->parsed()) return run_worker_command(worker_options);
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {
     return say_bad_input(e);

@@ -5,6 +5,7 @@ list(
   calibrate/csv_table.cpp
   calibrate/emulator.cpp
   calibrate/evaluator.cpp
+  calibrate/fault_injection.cpp
   calibrate/fit.cpp
   calibrate/fit_conflicts.cpp
   calibrate/fit_coverage.cpp
@@ -14,6 +15,8 @@ list(
   calibrate/optimise_nlopt.cpp
   calibrate/parallel.cpp
   calibrate/parameters.cpp
+  calibrate/run_broker.cpp
+  calibrate/run_store.cpp
   calibrate/secants.cpp
   calibrate/sobol_design.cpp
   calibrate/soil_curves.cpp

@@ -87,6 +87,7 @@ bool ProgramRun::says(const std::vector<std::string>& parts) const {
 }
 
 ProgramRun run(const std::vector<std::string>& arguments) {
+  ::setenv("TILTH_WORKER_PROGRAM", TILTH_PROGRAM, 0);  // this program cannot be its own worker
   std::vector<const char*> argv = {"calibrate"};
   for (const std::string& a : arguments) argv.push_back(a.c_str());
   const Captured output(std::cout);
