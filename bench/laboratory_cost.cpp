@@ -5,6 +5,7 @@
 //
 //     build/release/bin/laboratory_cost                  # every virtual test
 //     build/release/bin/laboratory_cost direct_shear ... # some of them
+//     build/release/bin/laboratory_cost --csv [test ...] # data/test_costs.csv: every fidelity, widest pack
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -50,12 +51,32 @@ std::string cost(const TestConfig& config, int num_lanes, PackingStore& packings
   return fmt::format("{:.2f}", cpu_s / num_lanes);
 }
 
+void print_csv(const std::vector<std::string>& ids, PackingStore& packings) {
+  fmt::print("experiment,fidelity,core_s,provenance,source\n");
+  for (const std::string& id : ids)
+    for (const auto& [fidelity, name] : {std::pair{Fidelity::preview, "preview"},
+                                         std::pair{Fidelity::search, "search"},
+                                         std::pair{Fidelity::confirm, "confirm"}}) {
+      const TestConfig config = virtual_test(id, fidelity);
+      cost(config, 1, packings);  // makes the packing
+      fmt::print("{},{},{},measured,bench/laboratory_cost --csv; nominal soils 15 % apart in packs of {}\n",
+                 id, name, cost(config, widest_lanes(), packings), widest_lanes());
+      std::fflush(stdout);
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  const bool csv = argc > 1 && std::string(argv[1]) == "--csv";
+  const int first = csv ? 2 : 1;
   const std::vector<std::string> ids =
-      argc > 1 ? std::vector<std::string>(argv + 1, argv + argc) : virtual_test_ids();
+      argc > first ? std::vector<std::string>(argv + first, argv + argc) : virtual_test_ids();
   PackingStore packings(default_packing_folder());
+  if (csv) {
+    print_csv(ids, packings);
+    return 0;
+  }
   fmt::print("| virtual test | particles | W = 1 [s] | W = 4 [s] | W = 8 [s] |\n"
              "| --- | ---: | ---: | ---: | ---: |\n");
   for (const std::string& id : ids) {

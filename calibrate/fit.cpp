@@ -76,6 +76,7 @@ void run_stages(FitContext& context) {
   run_design(context);         // 1. spread points: what can the model reach
   run_noise(context);          // 2. repeat seeds: what is noise
   run_search_rounds(context);  // 3. emulator and global search, checked by real runs
+  take_best_point(context);
   run_local_starts(context);   // 4. Levenberg-Marquardt from the best real points
   run_bias(context);           // 5. larger or slower runs: correct and refit
   find_conflicts(context);     // 6. what can be met alone, but not together

@@ -58,18 +58,32 @@ std::vector<std::string> problems(const FitOptions& options) {
   return found;
 }
 
-std::size_t expected_simulations(const FitOptions& options, std::size_t num_free,
-                                 bool has_confirm) {
+std::vector<PlannedStage> planned_stages(const FitOptions& options, std::size_t num_free,
+                                         bool has_confirm, bool has_holdout) {
   const auto count = [](int value) { return static_cast<std::size_t>(std::max(0, value)); };
   const auto iterations = static_cast<std::size_t>(std::min(6, options.max_iterations));
   const std::size_t iteration = count(options.num_search_seeds) * (2 * num_free + 2);
-  std::size_t total = 1 + count(options.num_design) + count(options.num_noise_seeds) +
-                      count(options.num_rounds) * count(options.round_size) +
-                      count(options.num_starts) * iterations * iteration +
-                      count(options.num_fresh_seeds);
+  std::vector<PlannedStage> stages = {
+      {"design", "search", 1 + count(options.num_design)},
+      {"noise floor", "search", count(options.num_noise_seeds)},
+      {"search", "search", count(options.num_rounds) * count(options.round_size)},
+      {"local search", "search", count(options.num_starts) * iterations * iteration}};
   if (has_confirm) {
-    total += count(options.max_bias_rounds) * (count(options.num_confirm_seeds) + 2 * iteration);
+    const std::size_t rounds = count(options.max_bias_rounds);
+    stages.push_back({"bias", "confirm", rounds * count(options.num_confirm_seeds)});
+    stages.push_back({"bias", "search", 2 * rounds * iteration});
   }
+  stages.push_back({"fresh seeds", has_confirm ? "confirm" : "search", count(options.num_fresh_seeds)});
+  if (has_holdout)
+    stages.push_back({"fresh seeds", "hold-outs", count(options.num_fresh_seeds) + 2 * num_free});
+  return stages;
+}
+
+std::size_t expected_simulations(const FitOptions& options, std::size_t num_free,
+                                 bool has_confirm) {
+  std::size_t total = 0;
+  for (const PlannedStage& s : planned_stages(options, num_free, has_confirm, false))
+    total += s.num_simulations;
   return std::min(total, options.max_simulations);
 }
 

@@ -50,8 +50,17 @@ FitOptions quick_fit_options();
 /// Everything wrong with the options, one sentence each; empty if they may be used.
 std::vector<std::string> problems(const FitOptions& options);
 
-/// Simulations a fit will take, assuming six iterations per local search; an estimate for
-/// progress bars, never more than max_simulations.
+/// What a stage will ask of which simulator, assuming six iterations per local search.
+struct PlannedStage {
+  std::string stage;
+  std::string simulator;  ///< "search", "confirm" or "hold-outs"
+  std::size_t num_simulations = 0;
+};
+std::vector<PlannedStage> planned_stages(const FitOptions& options, std::size_t num_free,
+                                         bool has_confirm, bool has_holdout);
+
+/// Simulations a fit will take without hold-outs of their own; an estimate for progress bars, never
+/// more than max_simulations.
 std::size_t expected_simulations(const FitOptions& options, std::size_t num_free, bool has_confirm);
 
 }  // namespace tilth

@@ -49,12 +49,16 @@ void run_design(FitContext& context) {
       shifted_sobol_points(context.options.num_design, num_free, context.options.seed);
   add_points(context, design);
 
+  take_best_point(context);
+  if (context.optimum) record_cost(context, context.optimum->chi_square);
+}
+
+void take_best_point(FitContext& context) {
   const std::vector<std::size_t> order = ranked_points(context);
   if (order.empty()) return;
   const KnownPoint& best = context.points[order.front()];
   const double chi_square = fit_residuals(context, best.unit, *best.features, 1).squaredNorm();
   context.optimum = {best.unit, *best.features, 1, chi_square, false, false};
-  record_cost(context, chi_square);
 }
 
 void set_reachability(const FitContext& context, std::size_t target, TargetResult& result) {

@@ -142,10 +142,8 @@ void run_search_rounds(FitContext& context) {
       return;
     }
     add_points(context, candidates(context, emulators, round));
-    const KnownPoint& best = context.points[ranked_points(context).front()];
-    const double chi_square = fit_residuals(context, best.unit, *best.features, 1).squaredNorm();
-    context.optimum = {best.unit, *best.features, 1, chi_square, false, false};
-    record_cost(context, chi_square);
+    take_best_point(context);
+    record_cost(context, context.optimum->chi_square);
   }
 }
 

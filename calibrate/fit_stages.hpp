@@ -96,6 +96,9 @@ std::vector<Emulator> make_emulators(const FitContext& context);
 
 // fit_stage_design.cpp
 void run_design(FitContext& context);
+/// Makes the best simulated point the optimum, until a local search has a better one; the sigmas change
+/// with the noise floor, and a fit that is stopped reports this point.
+void take_best_point(FitContext& context);
 /// Simulates points on the first search seed and adds them to context.points.
 void add_points(FitContext& context, const Eigen::MatrixXd& unit_points);
 /// Completed points, best chi-square first (ties in order of simulation).

@@ -13,6 +13,7 @@
 
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/fit_card.hpp"
+#include "calibrate/cli/fit_job.hpp"
 #include "calibrate/cli/fit_output.hpp"
 #include "calibrate/cli/progress_display.hpp"
 #include "calibrate/cli/run_config.hpp"
@@ -58,40 +59,6 @@ std::string criterion_text(const FitOptions& options) {
                      options.holdout_limit);
 }
 
-/// Everything a fit works on, read and checked before the run folder is made.
-struct FitJob {
-  SoilData soil;
-  FitOptions options;
-  Fidelity search = Fidelity::search;
-  Fidelity confirm = Fidelity::confirm;
-  std::vector<std::filesystem::path> inputs;
-};
-
-FitJob read_job(const FitCommandOptions& o) {
-  FitJob job;
-  const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
-  job.soil = load_soil(folder);
-  job.options = o.quick ? quick_fit_options() : FitOptions{};
-  job.options.seed = o.seed;
-  job.options.force = o.force;
-  if (o.max_runs > 0) job.options.max_simulations = o.max_runs;
-  for (const char* name : {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv"})
-    job.inputs.push_back(folder / name);
-  if (!o.config.empty()) {
-    apply_run_config(o.config, job.soil, job.options);
-    job.inputs.emplace_back(o.config);
-  }
-  if (o.quick) {
-    job.search = Fidelity::preview;
-    job.confirm = Fidelity::search;
-  }
-  std::vector<std::string> wrong = problems(o.session);
-  for (const std::string& p : problems(job.options)) wrong.push_back(p);
-  if (!wrong.empty()) throw ConfigError(wrong);
-  (void)material_of(job.soil, nominal_values(job.soil));
-  return job;
-}
-
 /// Tied parameters were held during the fit and recomputed in every run; the summary shall show it.
 void show_ties(const SoilData& soil, FitSummary& summary) {
   const Eigen::VectorXd values = with_ties(soil.parameters, summary.values());
@@ -120,46 +87,20 @@ void write_results(const FitJob& job, const FitSummary& summary, const FitCardCo
     log.warn(sentence);
 }
 
-/// What fit() itself refuses, found before the run folder is made: a fit that is told to stop at
-/// once looks at its input and runs nothing.
-void refuse_what_fit_refuses(const FitJob& job) {
-  FitOptions options = job.options;
-  options.should_stop = [] { return true; };
-  const FitSummary s = fit(fit_parameters(job.soil), fit_targets(job.soil), Simulator(), nullptr,
-                           options);
-  if (s.termination == Termination::bad_input || s.termination == Termination::under_determined)
-    throw ConfigError({s.message});
-}
-
 }  // namespace
 
 void add_fit_options(CLI::App& app, FitCommandOptions& o) {
-  CLI::Option* soil = app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand");
-  app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
-      ->excludes(soil);
-  app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
-  app.add_option("--seed", o.seed, "first packing seed (default 1)")
-      ->check(CLI::NonNegativeNumber);
+  add_job_options(app, o.job);
   app.add_option("--max-runs", o.max_runs,
                  "end after this many runs (parameter sets times packings), those of the store included")
       ->check(CLI::PositiveNumber);
   add_session_options(app, o.session);
-  app.add_flag("--quick", o.quick, "a labelled preview: small specimens, few packings");
-  app.add_flag("--force", o.force, "fit even with more free parameters than observations");
 }
 
 namespace {
 
-/// The command that gives this result, without what does not influence it.
 std::string reproducing_command(const FitCommandOptions& o) {
-  std::string text = o.soil_folder.empty() ? "calibrate --soil " + o.soil
-                                           : "calibrate --data " + o.soil_folder;
-  if (!o.config.empty()) text += " --config " + o.config;
-  text += fmt::format(" --seed {}", o.seed);
-  if (o.max_runs > 0) text += fmt::format(" --max-runs {}", o.max_runs);
-  if (o.quick) text += " --quick";
-  if (o.force) text += " --force";
-  return text;
+  return job_command(o.job) + (o.max_runs > 0 ? fmt::format(" --max-runs {}", o.max_runs) : "");
 }
 
 void say_end(const RunSession& session, spdlog::logger& log) {
@@ -174,10 +115,11 @@ void say_end(const RunSession& session, spdlog::logger& log) {
 
 int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   // 1. read and check everything, then open the folder
-  FitJob job = read_job(o);
-  refuse_what_fit_refuses(job);
-  const FitCardContext card{.seed = o.seed,
-                            .quick = o.quick,
+  FitJob job = read_job(o.job);
+  if (o.max_runs > 0) job.options.max_simulations = o.max_runs;
+  refuse_bad_job(job, problems(o.session));
+  const FitCardContext card{.seed = o.job.seed,
+                            .quick = o.job.quick,
                             .provenance_sentence = provenance_sentence(job.soil),
                             .measured_share = measured_share(job.soil.targets),
                             .search = job.search,

@@ -7,19 +7,15 @@
 #include <cstdint>
 #include <string>
 
+#include "calibrate/cli/fit_job.hpp"
 #include "calibrate/cli/run_session.hpp"
 
 namespace tilth {
 
 struct FitCommandOptions {
-  std::string soil;
-  std::string soil_folder;  ///< --data: a folder in the soil format, instead of --soil
-  std::string config;
+  JobOptions job;
   SessionOptions session;
-  std::uint64_t seed = 1;
   std::size_t max_runs = 0;  ///< parameter sets times packings; 0: as the fit options say
-  bool quick = false;
-  bool force = false;
 };
 
 /// Adds the options of the main job to the program itself.

@@ -6,10 +6,12 @@
 #include <exception>
 #include <iostream>
 
+#include "calibrate/cli/command_cache.hpp"
 #include "calibrate/cli/command_check.hpp"
 #include "calibrate/cli/command_export.hpp"
 #include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
+#include "calibrate/cli/command_plan.hpp"
 #include "calibrate/cli/command_simulate.hpp"
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -43,6 +45,8 @@ int run_program(int argc, const char* const* argv) {
   ExportOptions export_options;
   FeaturesOptions features_options;
   WorkerOptions worker_options;
+  CacheOptions cache_options;
+  PlanOptions plan_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -53,6 +57,10 @@ int run_program(int argc, const char* const* argv) {
   CLI::App* features =
       app.add_subcommand("features", "rows of measurements.csv from measured curves");
   add_features_options(*features, features_options);
+  CLI::App* plan = app.add_subcommand("plan", "runs and core-hours a fit will take; starts nothing");
+  add_plan_options(*plan, plan_options);
+  CLI::App* cache = app.add_subcommand("cache", "list, show, remove and merge stored simulations");
+  add_cache_options(*cache, cache_options);
   CLI::App* worker = app.add_subcommand("worker", "simulations on request, line by line");
   worker->group("");  // not for people
   add_worker_options(*worker, worker_options);
@@ -68,6 +76,8 @@ int run_program(int argc, const char* const* argv) {
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
     if (features->parsed()) return run_features(features_options);
     if (exporting->parsed()) return run_export(export_options);
+    if (plan->parsed()) return run_plan(plan_options);
+    if (cache->parsed()) return run_cache(cache_options);
     if (worker->parsed()) return run_worker_command(worker_options);
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <thread>
@@ -111,6 +112,7 @@ RunSession::RunSession(const SessionOptions& o, const fs::path& folder)
   context_.broker = broker_.get();
   std::error_code none;
   fs::remove(folder / "STOP", none);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its write
 }
 
 RunSession::~RunSession() {
