@@ -11,6 +11,8 @@
 namespace tilth {
 namespace {
 
+constexpr double num_sds = 3.0;
+
 struct TrainingSet {
   std::vector<Eigen::VectorXd> points;
   std::vector<double> values;
@@ -59,7 +61,7 @@ std::vector<RowOutputs> filled_outputs(const std::vector<SampleRow>& rows,
       const auto guess = emulator->predict(rows[static_cast<std::size_t>(r)].unit.col(i));
       const double sd = std::sqrt(std::max(guess.variance, least_variance));
       for (int k = 0; k < 3; ++k)
-        filled[static_cast<std::size_t>(k)].values(i, r) = guess.mean + 2.0 * (k - 1) * sd;
+        filled[static_cast<std::size_t>(k)].values(i, r) = guess.mean + num_sds * (k - 1) * sd;
     }
   }
   return filled;
