@@ -15,14 +15,19 @@ namespace {
 
 void count_runs(SensitivitySummary& summary) {
   std::set<std::pair<std::uint64_t, std::vector<double>>> seen;
-  for (const SampleRun& run : summary.runs) {
-    if (!seen.insert({run.seed, {run.parameters.begin(), run.parameters.end()}}).second) continue;
+  for (SampleRun& run : summary.runs) {
+    run.is_known = !seen.insert({run.seed, {run.parameters.begin(), run.parameters.end()}}).second;
+    if (run.is_known) continue;
     ++summary.num_runs;
-    if (run.evaluation.status == EvaluationStatus::failed) ++summary.num_failed;
+    if (run.has_failed()) ++summary.num_failed;
   }
 }
 
 }  // namespace
+
+bool SampleRun::has_failed() const {
+  return evaluation.status == EvaluationStatus::failed || !evaluation.message.empty();
+}
 
 bool SensitivitySummary::has_indices() const {
   return std::ranges::any_of(features, [](const FeatureSensitivity& f) {

@@ -76,9 +76,12 @@ struct SampleRun {
   std::size_t row = 0;
   std::size_t point = 0;        ///< column of its row
   bool is_repeat = false;       ///< on the row's second packing
+  bool is_known = false;        ///< the same parameters on the same packing came earlier
   std::uint64_t seed = 0;
   Eigen::VectorXd parameters;  ///< physical, all
   Evaluation evaluation;
+
+  bool has_failed() const;  ///< in one of its tests at least
 };
 
 enum class SensitivityEnd { completed, stopped, budget_spent };
@@ -91,8 +94,8 @@ struct SensitivitySummary {
   std::vector<std::string> free_names;      ///< in the order of IndexEstimate::parameter
   std::vector<FeatureSensitivity> features;  ///< in target order
   std::vector<SampleRun> runs;  ///< of the rows above, repeats after the points of a row
-  std::size_t num_runs = 0;     ///< different ones: points of a row may coincide
-  std::size_t num_failed = 0;   ///< of these
+  std::size_t num_runs = 0;     ///< without is_known
+  std::size_t num_failed = 0;   ///< of these, in one test at least
 
   bool has_indices() const;       ///< of one feature at least
   double widest_interval() const;  ///< of S and ST; NaN without
@@ -100,7 +103,8 @@ struct SensitivitySummary {
 
 /// Runs one study.
 ///
-/// Failed runs are left out, counted, and looked at for a pattern (failure_pattern.hpp); where they
+/// A run may fail in one test and not in another (partial simulators): only the features of that
+/// test are missing. Failed runs are left out, counted, and looked at for a pattern (failure_pattern.hpp); where they
 /// have one, or are too few to show one, every estimate gets bounds (missing_bounds.hpp). Rows are
 /// run in order, in batches; when a stop or the budget ends it, the result is that of the rows
 /// finished until then, exactly as if num_rows had been that number. Same arguments, same bits.

@@ -36,7 +36,7 @@ std::string reason_of(const std::string& message) {
 void append_reasons(const SensitivitySummary& s, std::string& text) {
   std::map<std::string, int> counts;
   for (const SampleRun& run : s.runs)
-    if (run.evaluation.status == EvaluationStatus::failed)
+    if (run.has_failed() && !run.is_known)
       ++counts[reason_of(run.evaluation.message)];
   std::vector<std::pair<int, std::string>> reasons;
   for (const auto& [reason, count] : counts) reasons.emplace_back(-count, reason);
@@ -47,20 +47,33 @@ void append_reasons(const SensitivitySummary& s, std::string& text) {
 
 std::string verdict_sentence(FailureVerdict verdict) {
   switch (verdict) {
-    case FailureVerdict::none: return "none";
+    case FailureVerdict::none: return "";
     case FailureVerdict::no_pattern:
-      return "no dependence on a parameter seen: estimates on the completed runs stand";
+      return "; no dependence on a parameter seen: estimates on the completed runs stand";
     case FailureVerdict::too_few:
-      return "too few to see a pattern: {bounds} say what they could change";
+      return "; too few to see a pattern: {bounds} say what they could change";
     case FailureVerdict::concentrated:
-      return "CONCENTRATED: estimates are of the rest of the cube; {bounds} say what it could change";
+      return "; CONCENTRATED: estimates are of the other runs; {bounds} say what it could change";
   }
   return "";
 }
 
-void append_failures(const SensitivitySummary& s, const FailurePattern& p, std::string& text) {
-  text += fmt::format("    failed        : {} of {} ({}); {}\n", p.num_failed, p.num_runs,
+bool is_same(const FailurePattern& a, const FailurePattern& b) {
+  const auto same_parameter = [](const ParameterFailures& x, const ParameterFailures& y) {
+    return x.p_value == y.p_value;
+  };
+  return a.num_failed == b.num_failed && std::ranges::equal(a.parameters, b.parameters, same_parameter);
+}
+
+// `before`: the feature above, whose table is not printed twice.
+void append_failures(const SensitivitySummary& s, const FailurePattern& p,
+                     const FailurePattern* before, std::string& text) {
+  text += fmt::format("    failed        : {} of {} ({}){}\n", p.num_failed, p.num_runs,
                       percent(p.share()), verdict_sentence(p.verdict));
+  if (before && p.num_failed > 0 && is_same(p, *before)) {
+    text += "      the same runs as above\n";
+    return;
+  }
   for (std::size_t j = 0; j < p.parameters.size(); ++j) {
     const ParameterFailures& f = p.parameters[j];
     text += fmt::format("      {:<28} p = {:<8} low third {}, middle {}, high {}\n",
@@ -71,22 +84,23 @@ void append_failures(const SensitivitySummary& s, const FailurePattern& p, std::
 
 void append_table(const SensitivitySummary& s, const FeatureSensitivity& f,
                   const std::vector<IndexKind>& kinds, std::string& text) {
-  text += fmt::format("    {:<28}", "parameter");
-  for (const IndexKind kind : kinds) text += fmt::format(" {:<36}", to_string(kind));
-  text += '\n';
-  for (std::size_t j = 0; j < s.free_names.size(); ++j) {
-    text += fmt::format("    {:<28}", s.free_names[j]);
-    for (const IndexKind kind : kinds)
-      for (const IndexEstimate& i : f.indices)
-        if (i.kind == kind && i.parameter == j) text += fmt::format(" {:<36}", with_interval(i));
-    text += '\n';
+  std::vector<std::string> lines(s.free_names.size() + 1, "    parameter");
+  for (std::size_t j = 0; j < s.free_names.size(); ++j) lines[j + 1] = "    " + s.free_names[j];
+  for (const IndexKind kind : kinds) {
+    std::size_t width = 0;
+    for (const std::string& line : lines) width = std::max(width, line.size());
+    for (std::string& line : lines) line.resize(width + 2, ' ');
+    lines[0] += fmt::format("{:>8}", to_string(kind));
+    for (const IndexEstimate& i : f.indices)
+      if (i.kind == kind) lines[i.parameter + 1] += with_interval(i);
   }
+  for (const std::string& line : lines) text += line + "\n";
 }
 
 void append_pairs(const SensitivitySummary& s, const FeatureSensitivity& f, std::string& text) {
   for (const IndexEstimate& i : f.indices)
     if (i.kind == IndexKind::second_order)
-      text += fmt::format("    Sij {} x {}: {}\n", s.free_names[i.parameter],
+      text += fmt::format("    Sij {} x {} {}\n", s.free_names[i.parameter],
                           s.free_names[i.other], with_interval(i));
 }
 
@@ -99,13 +113,14 @@ void append_emulator(const FeatureSensitivity& f, std::string& text) {
   text += "    intervals     : of the integration only; the emulator's own error is not in them\n";
 }
 
-void append_feature(const SensitivitySummary& s, const FeatureSensitivity& f, std::string& text) {
+void append_feature(const SensitivitySummary& s, std::size_t feature, std::string& text) {
+  const FeatureSensitivity& f = s.features[feature];
   const bool is_morris = s.options.method == SensitivityMethod::morris;
   const bool is_emulated = s.options.method == SensitivityMethod::emulator;
   text += fmt::format("\n[[{}]]{}{}\n", f.name, is_emulated ? "   EMULATOR" : "",
                       f.holdout ? "   held out of fits" : "");
   text += fmt::format("    scale         : {}\n", f.log_transform ? "ln(value)" : "value, SI unit");
-  append_failures(s, f.failures, text);
+  append_failures(s, f.failures, feature > 0 ? &s.features[feature - 1].failures : nullptr, text);
   text += fmt::format("    packing noise : {}\n", noise_sentence(f));
   if (is_emulated) append_emulator(f, text);
   if (!f.no_indices.empty()) {
@@ -149,7 +164,8 @@ std::string method_sentence(const SensitivitySummary& s) {
 std::string failure_sentence(const SensitivitySummary& s) {
   const double share =
       s.num_runs == 0 ? 0.0 : static_cast<double>(s.num_failed) / static_cast<double>(s.num_runs);
-  return fmt::format("{} runs, {} failed ({})", s.num_runs, s.num_failed, percent(share));
+  return fmt::format("{} runs, {} failed in a test or more ({})", s.num_runs, s.num_failed,
+                     percent(share));
 }
 
 std::string noise_sentence(const FeatureSensitivity& f) {
@@ -188,7 +204,7 @@ std::string sensitivity_report_text(const SensitivitySummary& s,
   text += fmt::format("ended: {} after {} of {} samples; {}\n", to_string(s.end), s.num_rows,
                       s.options.num_rows, failure_sentence(s));
   append_reasons(s, text);
-  for (const FeatureSensitivity& f : s.features) append_feature(s, f, text);
+  for (std::size_t k = 0; k < s.features.size(); ++k) append_feature(s, k, text);
   const std::string hint = advice(s);
   return hint.empty() ? text : text + "\n" + hint + "\n";
 }

@@ -38,7 +38,7 @@ std::string sensitivity_report_text(const SensitivitySummary& summary,
 std::string sensitivity_csv(const SensitivitySummary& summary, const SensitivityContext& context);
 
 /// One line per run: row, point, is_repeat, packing_seed, status, parameters, features (physical,
-/// SI), message, preview.
+/// SI), message, preview. Status partial: some of its tests failed.
 std::string samples_csv(const SensitivitySummary& summary,
                         const std::vector<Parameter>& parameters,
                         const SensitivityContext& context);

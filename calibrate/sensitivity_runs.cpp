@@ -33,7 +33,7 @@ void plan_row(const std::vector<Parameter>& parameters, const SampleRow& row, st
               std::vector<SampleRun>& runs) {
   const auto last = static_cast<std::size_t>(row.unit.cols() - 1);
   const auto plan = [&](std::size_t point, bool is_repeat, std::uint64_t seed) {
-    runs.push_back({row_id, point, is_repeat, seed,
+    runs.push_back({row_id, point, is_repeat, false, seed,
                     physical_point(parameters, row.unit.col(static_cast<Eigen::Index>(point))),
                     {}});
   };
@@ -80,13 +80,10 @@ void collect_outputs(const std::vector<Target>& targets, StudyRuns& study) {
   const Eigen::Index num_points = n > 0 ? study.rows.front().unit.cols() : 0;
   study.outputs.assign(targets.size(), {Eigen::MatrixXd::Constant(num_points, n, nan_value),
                                         Eigen::MatrixXd::Constant(2, n, nan_value)});
-  study.is_failed = Eigen::MatrixXd::Zero(num_points, n);
   for (const SampleRun& run : study.runs) {
     const auto r = static_cast<Eigen::Index>(run.row);
     const auto i = static_cast<Eigen::Index>(run.point);
-    const bool is_completed = run.evaluation.status == EvaluationStatus::completed;
-    if (!run.is_repeat && !is_completed) study.is_failed(i, r) = 1.0;
-    if (!is_completed) continue;
+    if (run.evaluation.status != EvaluationStatus::completed) continue;
     const Eigen::VectorXd features = transformed_features(targets, run.evaluation);
     for (std::size_t k = 0; k < targets.size(); ++k) {
       const double y = features[static_cast<Eigen::Index>(k)];
@@ -114,7 +111,8 @@ StudyRuns run_rows(const std::vector<Parameter>& parameters, const std::vector<T
   // A value without a logarithm is missing for its own feature alone, as for hold-outs in a fit.
   std::vector<Target> asked = targets;
   for (Target& target : asked) target.holdout = true;
-  Evaluator evaluator(simulator, asked, "sensitivity", ledger);
+  Evaluator evaluator(simulator, asked, "sensitivity", ledger, TargetScope::all,
+                      MissingFeatures::keep);
   run_in_batches(evaluator, parameters,
                  rows_per_packing * static_cast<std::size_t>(options.packings.num_packings),
                  study);

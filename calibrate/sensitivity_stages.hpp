@@ -12,9 +12,8 @@ namespace tilth {
 
 /// What was run, in order of the rows.
 struct StudyRuns {
-  std::vector<SampleRow> rows;    ///< finished ones only
+  std::vector<SampleRow> rows;      ///< finished ones only
   std::vector<RowOutputs> outputs;  ///< one per target, T
-  Eigen::MatrixXd is_failed;        ///< (num_points, num_rows), 1 or 0: whole runs
   std::vector<SampleRun> runs;
   SensitivityEnd end = SensitivityEnd::completed;
 };

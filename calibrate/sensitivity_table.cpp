@@ -23,9 +23,9 @@ std::string quoted_cell(const std::string& text) {
   return out + "\"";
 }
 
-std::string_view status_word(EvaluationStatus status) {
-  switch (status) {
-    case EvaluationStatus::completed: return "completed";
+std::string_view status_word(const SampleRun& run) {
+  switch (run.evaluation.status) {
+    case EvaluationStatus::completed: return run.has_failed() ? "partial" : "completed";
     case EvaluationStatus::failed: return "failed";
     case EvaluationStatus::skipped: return "skipped";
   }
@@ -66,7 +66,7 @@ std::string samples_csv(const SensitivitySummary& s, const std::vector<Parameter
   text += ",message,preview\n";
   for (const SampleRun& run : s.runs) {
     text += fmt::format("{},{},{},{},{}", run.row, run.point, run.is_repeat ? 1 : 0, run.seed,
-                        status_word(run.evaluation.status));
+                        status_word(run));
     for (const double v : run.parameters) text += "," + cell(v);
     const bool has_features = run.evaluation.status == EvaluationStatus::completed;
     for (std::size_t k = 0; k < s.features.size(); ++k)

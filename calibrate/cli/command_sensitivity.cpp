@@ -22,9 +22,11 @@
 namespace tilth {
 namespace {
 
-/// The one place where a study gets its simulator: a store of runs goes around this one.
+/// The one place where a study gets its simulator: a store of runs goes around this one. A test that
+/// fails takes no other test's features with it.
 Simulator study_simulator(const SensitivityStudy& study, const RunContext& context) {
-  return dem_simulator(study.soil, study.fidelity, context, TargetScope::all);
+  return dem_simulator(study.soil, study.fidelity, context, TargetScope::all,
+                       FailedTest::leaves_others);
 }
 
 int thread_count(int wanted) {

@@ -90,7 +90,7 @@ Json feature_json(const SensitivitySummary& s, const FeatureSensitivity& f) {
 Json failed_runs_json(const SensitivitySummary& s, const std::vector<Parameter>& parameters) {
   Json list = Json::array();
   for (const SampleRun& run : s.runs) {
-    if (run.evaluation.status != EvaluationStatus::failed) continue;
+    if (!run.has_failed() || run.is_known) continue;
     Json values = Json::object();
     for (std::size_t k = 0; k < parameters.size(); ++k)
       values[parameters[k].name] = run.parameters[static_cast<Eigen::Index>(k)];

@@ -122,7 +122,8 @@ void check_options(const SensitivityCommandOptions& o, SensitivityStudy& study,
                    Problems& found) {
   if (o.max_runs) study.options.max_simulations = *o.max_runs;
   // Without a soil the rest is still checked, against one free parameter.
-  const std::vector<Parameter> any = {Parameter{.name = "any"}};
+  std::vector<Parameter> any(1);
+  any.front().name = "any";
   append(problems(study.parameters.empty() ? any : study.parameters, study.options), found);
 }
 

@@ -113,6 +113,32 @@ TEST_CASE("Sensitivity: if all runs fail that is said of every feature", "[calib
                                                  Contains("the packing exploded"));
 }
 
+TEST_CASE("Sensitivity: a test that fails takes no other test's features with it",
+          "[calibrate][sensitivity]") {
+  // Feature 0 fails for x1 > 0.9 and leaves its reason, as a partial simulator does.
+  const Simulator partial = [](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t>) {
+    std::vector<Evaluation> runs;
+    for (const auto& x : parameters.colwise()) {
+      const bool fails = x[0] > 0.9;
+      runs.push_back({EvaluationStatus::completed,
+                      Eigen::Vector2d(fails ? std::nan("") : additive(x), additive(x)),
+                      fails ? "direct_shear (timeout): after 3 s" : ""});
+    }
+    return runs;
+  };
+  const SensitivitySummary s =
+      run_sensitivity(unit_parameters(2), {plain_target("cut"), plain_target("whole")}, partial,
+                      study(SensitivityMethod::sobol, 64));
+  CHECK(s.num_failed > 0);
+  CHECK(s.num_failed < s.num_runs / 4);
+  CHECK(s.features[0].failures.verdict == FailureVerdict::concentrated);
+  CHECK(s.features[1].failures.num_failed == 0);
+  CHECK(std::isnan(s.features[1].indices.front().bound_low));
+  CHECK(std::isfinite(s.features[0].indices.front().bound_low));
+  CHECK_THAT(sensitivity_report_text(s, {}), Contains("direct_shear (timeout): after"));
+  CHECK_THAT(samples_csv(s, unit_parameters(2), {}), Contains(",partial,"));
+}
+
 TEST_CASE("Sensitivity: a value without logarithm is missing for its own feature alone",
           "[calibrate][sensitivity]") {
   const auto two = [](const Eigen::VectorXd& x) -> Eigen::VectorXd {
