@@ -32,9 +32,9 @@ std::string percent(double share) {
 
 std::string title_of(const SensitivitySummary& s, const FeatureSensitivity& f,
                      const SensitivityContext& context) {
-  return fmt::format("{}{}: {} ({})\n{}\npacking noise {} of one run's variance, {} of runs failed",
+  return fmt::format("{}{}: {} (scale: {})\n{}\npacking noise {} of one run's variance, {} of its runs failed",
                      context.preview ? "PREVIEW   " : "", context.subject, f.name,
-                     f.log_transform ? "of ln(value)" : "of the value", method_sentence(s),
+                     f.log_transform ? "ln(value)" : "value, SI unit", method_sentence(s),
                      percent(f.noise.noise_share), percent(f.failures.share()));
 }
 
