@@ -8,16 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "calibrate/cli/sensitivity_study.hpp"
 #include "calibrate/sensitivity_report.hpp"
 
 namespace tilth {
 
-/// What the file says beside the study. `timing` and `reproduction` are the only parts that differ
-/// between runs of the same command and seed.
+/// What the file says beside the study. `reproduction` is the only part that differs between runs of
+/// the same study; what a run cost is in timing.json.
 struct SensitivityCardContext {
   SensitivityContext report;
   std::string soil_id;
-  double seconds = 0.0;
   std::string command;
   std::vector<std::filesystem::path> inputs;
   std::vector<Parameter> parameters;
@@ -26,6 +26,9 @@ struct SensitivityCardContext {
 /// The file as JSON text, schema "tilth.sensitivity/1".
 std::string sensitivity_json(const SensitivitySummary& summary,
                              const SensitivityCardContext& context);
+
+/// config.json: what makes one study different from another, for --resume.
+std::string sensitivity_config_json(const SensitivityStudy& study);
 
 /// What an extension must keep.
 struct SavedStudy {

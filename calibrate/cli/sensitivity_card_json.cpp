@@ -135,10 +135,26 @@ std::string sensitivity_json(const SensitivitySummary& s, const SensitivityCardC
   for (const FeatureSensitivity& f : s.features) card["features"].push_back(feature_json(s, f));
   card["cost"] = {{"num_runs", s.num_runs}, {"num_failed", s.num_failed}};
   card["failed_runs"] = failed_runs_json(s, c.parameters);
-  card["timing"] = {{"wall_s", c.seconds}};
   card["reproduction"] = {{"command", c.command},
-                          {"tolerance", "byte for byte outside timing and reproduction"}};
+                          {"tolerance", "byte for byte outside reproduction"}};
   return card.dump(2) + "\n";
+}
+
+std::string sensitivity_config_json(const SensitivityStudy& study) {
+  const SensitivityOptions& o = study.options;
+  Json config;
+  config["schema"] = "tilth.run/1";
+  config["tool"] = tool_json();
+  config["soil"] = study.soil.id;
+  config["quick"] = study.fidelity == Fidelity::preview;
+  config["inputs"] = inputs_json(study.inputs);
+  config["sensitivity"] = {{"method", std::string(to_string(o.method))},
+                           {"samples", o.num_rows},
+                           {"levels", o.levels},
+                           {"num_packings", o.packings.num_packings},
+                           {"seed", o.packings.first_seed},
+                           {"num_resamples", o.num_resamples}};
+  return config.dump(2) + "\n";
 }
 
 SavedStudy read_saved_study(const std::filesystem::path& run_folder) {

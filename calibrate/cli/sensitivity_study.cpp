@@ -120,6 +120,7 @@ void check_inputs(const SavedStudy& saved, const SensitivityStudy& study, Proble
 
 void check_options(const SensitivityCommandOptions& o, SensitivityStudy& study,
                    Problems& found) {
+  append(problems(o.session), found);
   if (o.max_runs) study.options.max_simulations = *o.max_runs;
   // Without a soil the rest is still checked, against one free parameter.
   std::vector<Parameter> any(1);
@@ -140,10 +141,10 @@ SensitivityStudy read_study(const SensitivityCommandOptions& o) {
       append(e.sentences(), found);
     }
   };
-  if (o.extend && o.out.empty())
+  if (o.extend && o.session.out.empty())
     throw ConfigError({"--extend: --out is missing, the run folder of the study"});
   if (o.extend) {
-    collect([&] { saved = read_saved_study(o.out); });
+    collect([&] { saved = read_saved_study(o.session.out); });
     if (saved) collect([&] { read_extended_study(o, *saved, study, found); });
   } else {
     read_new_study(o, study, found);
