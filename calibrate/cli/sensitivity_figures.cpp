@@ -87,7 +87,7 @@ std::vector<std::vector<double>> bars_of(const std::vector<IndexEstimate>& indic
 std::string bar_plot(const std::string& name, const char* color, const std::string& label) {
   return fmt::format(
       "${0} using 1:2:(0.3) with boxes fs solid 0.55 lc rgb '{1}' title {2}, "
-      "${0} using 1:2:3:4 with yerrorbars pt -1 lw 1.6 lc rgb '#222222' notitle",
+      "${0} using 1:2:3:4 with yerrorbars pt 7 ps 0.1 lw 1.6 lc rgb '#222222' notitle",
       name, color, gnuplot_quoted(label));
 }
 
@@ -103,7 +103,7 @@ std::string sobol_script(const SensitivitySummary& s, const FeatureSensitivity& 
   for (auto& row : bars_of(total, 0.25, true)) bounds.push_back(row);
   if (!bounds.empty()) {
     blocks += gnuplot_data("bounds", bounds);
-    plots += ", $bounds using 1:2:3:4 with yerrorbars pt -1 lw 1.2 dt 3 lc rgb '#8f5fbf' title "
+    plots += ", $bounds using 1:2:3:4 with yerrorbars pt 7 ps 0.1 lw 1.2 dt 3 lc rgb '#8f5fbf' title "
              "'bounds of failed runs'";
   }
   std::string tics;
@@ -118,7 +118,7 @@ std::string sobol_script(const SensitivitySummary& s, const FeatureSensitivity& 
   }
   tics += fmt::format("{} {}", gnuplot_quoted("packing noise"), d);
   return blocks +
-         fmt::format("set xtics ({}) {}\nset ylabel 'share of the variance due to parameters'\n"
+         fmt::format("set pointintervalbox 0\nset xtics ({}) {}\nset ylabel 'share of the variance due to parameters'\n"
                      "set xrange [-0.6:{:.2f}]\nset yrange [*<0:1.05<*]\nset xzeroaxis lt 1 lc rgb "
                      "'#444444'\nplot {}\n",
                      tics, s.free_names.size() > 4 ? "rotate by -20" : "", d + 0.6, plots);
