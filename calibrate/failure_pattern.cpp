@@ -37,8 +37,7 @@ std::vector<Unit> units_of(const std::vector<SampleRow>& rows, const Eigen::Matr
 double permutation_p_value(const Eigen::ArrayXd& scores, const Eigen::ArrayXd& shares) {
   const Eigen::ArrayXd s = scores - scores.mean();
   const Eigen::ArrayXd c = shares - shares.mean();
-  const double variance =
-      s.square().sum() * c.square().sum() / static_cast<double>(s.size() - 1);
+  const double variance = s.square().sum() * c.square().sum() / static_cast<double>(s.size() - 1);
   if (!(variance > 0.0)) return 1.0;
   return std::erfc(std::abs((s * c).sum()) / std::sqrt(2.0 * variance));
 }
@@ -56,8 +55,8 @@ ParameterFailures failures_along(const std::vector<Unit>& units) {
   }
   ParameterFailures result;
   for (std::size_t k = 0; k < 3; ++k) result.shares[k] = failed[k] / runs[k];
-  const double p = std::min(permutation_p_value(u, share),
-                            permutation_p_value((u - 0.5).abs(), share));
+  const double p =
+      std::min(permutation_p_value(u, share), permutation_p_value((u - 0.5).abs(), share));
   result.p_value = std::min(1.0, 2.0 * p);
   return result;
 }
@@ -76,10 +75,14 @@ FailureVerdict verdict_of(const FailurePattern& pattern) {
 
 std::string_view to_string(FailureVerdict verdict) {
   switch (verdict) {
-    case FailureVerdict::none: return "none";
-    case FailureVerdict::no_pattern: return "no_pattern";
-    case FailureVerdict::too_few: return "too_few";
-    case FailureVerdict::concentrated: return "concentrated";
+    case FailureVerdict::none:
+      return "none";
+    case FailureVerdict::no_pattern:
+      return "no_pattern";
+    case FailureVerdict::too_few:
+      return "too_few";
+    case FailureVerdict::concentrated:
+      return "concentrated";
   }
   return "";
 }

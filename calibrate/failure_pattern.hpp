@@ -27,8 +27,9 @@ inline constexpr std::size_t min_failures_for_a_pattern = 8;
 inline constexpr double failure_significance = 0.05;
 
 struct ParameterFailures {
-  double p_value = 1.0;            ///< of "failures do not depend on this parameter"
-  std::array<double, 3> shares{};  ///< failed in the low, middle, high third of its range; NaN: no run
+  double p_value = 1.0;  ///< of "failures do not depend on this parameter"
+  std::array<double, 3>
+      shares{};  ///< failed in the low, middle, high third of its range; NaN: no run
 };
 
 struct FailurePattern {

@@ -18,10 +18,11 @@ inline constexpr std::size_t max_fill_points = 80;
 /// Mean and sd are an emulator's at the missing point (calibrate/emulator.hpp), sd at least its
 /// root mean square leave-one-out error: sd grows with the distance from completed runs, and is
 /// wide everywhere if the emulator is poor. 3 sd hold 95 % of any distribution with one peak: where
-/// runs fail the emulator extrapolates, and 2 sd of a normal one would promise too much. An estimate's bounds are the least and the largest of
-/// those on the completed runs and on these three. They are scenarios, not a worst case: imputing
-/// the observed extremes one by one would allow any index from 0 to 1 at 5 % missing runs.
-/// Repeats are left as they are. Empty if too few runs completed for an emulator.
+/// runs fail the emulator extrapolates, and 2 sd of a normal one would promise too much. An
+/// estimate's bounds are the least and the largest of those on the completed runs and on these
+/// three. They are scenarios, not a worst case: imputing the observed extremes one by one would
+/// allow any index from 0 to 1 at 5 % missing runs. Repeats are left as they are. Empty if too few
+/// runs completed for an emulator.
 /// @source own construction, docs/theory/sensitivity.md; 3 sd: Vysochanskij & Petunin 1980
 std::vector<RowOutputs> filled_outputs(const std::vector<SampleRow>& rows,
                                        const RowOutputs& outputs);

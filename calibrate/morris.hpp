@@ -46,7 +46,8 @@ RowTerms morris_terms(const std::vector<SampleRow>& rows, const RowOutputs& outp
 ///         1509; correction: own derivation, docs/theory/sensitivity.md
 RowStatistic morris_statistic(int num_free, int levels, int num_packings);
 
-/// mu_star of a parameter that does nothing:  E|d| = 2 sqrt(v) / (delta sqrt(pi)), for normal noise.
+/// mu_star of a parameter that does nothing:  E|d| = 2 sqrt(v) / (delta sqrt(pi)), for normal
+/// noise.
 double morris_noise_floor(double independent_noise, int levels);
 
 /// What the entries of morris_statistic() are, without the noise share.

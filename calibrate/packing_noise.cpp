@@ -63,8 +63,7 @@ NoiseSplit noise_split(const Eigen::VectorXd& means, const Eigen::VectorXd& coun
   const double shared = counts[term_shared] > 0 ? means[term_shared] : 0.0;
   split.shared = std::clamp(shared, 0.0, noise);
   split.independent = noise - split.shared;
-  split.parameters =
-      split.total - split.independent - (1.0 - 1.0 / num_packings) * split.shared;
+  split.parameters = split.total - split.independent - (1.0 - 1.0 / num_packings) * split.shared;
   split.noise_share = std::min(1.0, noise / (std::max(0.0, split.parameters) + noise));
   return split;
 }

@@ -41,7 +41,8 @@ void add_noise_terms(const RowOutputs& outputs, double centre, RowTerms& terms);
 NoiseSplit noise_split(const Eigen::VectorXd& means, const Eigen::VectorXd& counts,
                        int num_packings);
 
-/// Mean of the ends of all rows: close to the feature's mean, subtracted before products are formed.
+/// Mean of the ends of all rows: close to the feature's mean, subtracted before products are
+/// formed.
 double centre_of(const RowOutputs& outputs);
 
 }  // namespace tilth

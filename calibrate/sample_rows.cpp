@@ -10,7 +10,12 @@ namespace tilth {
 namespace {
 
 // Streams of design_word().
-enum : std::uint64_t { stream_points = 1, stream_packing = 2, stream_repeat = 3, stream_second = 4 };
+enum : std::uint64_t {
+  stream_points = 1,
+  stream_packing = 2,
+  stream_repeat = 3,
+  stream_second = 4
+};
 
 std::uint64_t scrambled(std::uint64_t word) {
   word += 0x9e3779b97f4a7c15ULL;

@@ -30,8 +30,8 @@ std::string_view to_string(SensitivityMethod method);
 
 struct SensitivityOptions {
   SensitivityMethod method = SensitivityMethod::morris;
-  int num_rows = 16;  ///< samples: trajectories, rows or points; see default_num_rows()
-  int levels = 4;     ///< Morris grid: even, >= 4. Its numbers, and ranks, depend on it
+  int num_rows = 16;        ///< samples: trajectories, rows or points; see default_num_rows()
+  int levels = 4;           ///< Morris grid: even, >= 4. Its numbers, and ranks, depend on it
   PackingPlan packings;     ///< first_seed seeds the design too
   int num_resamples = 500;  ///< bootstrap
   std::size_t max_simulations = std::numeric_limits<std::size_t>::max();
@@ -63,20 +63,20 @@ struct FeatureSensitivity {
   bool holdout = false;
   std::vector<IndexEstimate> indices;
   NoiseSplit noise;
-  double noise_low95 = std::numeric_limits<double>::quiet_NaN();   ///< of noise.noise_share
+  double noise_low95 = std::numeric_limits<double>::quiet_NaN();  ///< of noise.noise_share
   double noise_high95 = std::numeric_limits<double>::quiet_NaN();
   double noise_floor = std::numeric_limits<double>::quiet_NaN();  ///< Morris: mu_star of no effect
   FailurePattern failures;
-  EmulatorError emulator;   ///< method emulator only
-  std::string no_indices;   ///< why there are none; empty if there are
+  EmulatorError emulator;  ///< method emulator only
+  std::string no_indices;  ///< why there are none; empty if there are
 };
 
 /// One run, with everything needed to use it elsewhere.
 struct SampleRun {
   std::size_t row = 0;
-  std::size_t point = 0;        ///< column of its row
-  bool is_repeat = false;       ///< on the row's second packing
-  bool is_known = false;        ///< the same parameters on the same packing came earlier
+  std::size_t point = 0;   ///< column of its row
+  bool is_repeat = false;  ///< on the row's second packing
+  bool is_known = false;   ///< the same parameters on the same packing came earlier
   std::uint64_t seed = 0;
   Eigen::VectorXd parameters;  ///< physical, all
   Evaluation evaluation;
@@ -90,24 +90,25 @@ std::string_view to_string(SensitivityEnd end);
 struct SensitivitySummary {
   SensitivityOptions options;  ///< as asked
   SensitivityEnd end = SensitivityEnd::completed;
-  int num_rows = 0;                         ///< rows that all runs were made of
-  std::vector<std::string> free_names;      ///< in the order of IndexEstimate::parameter
+  int num_rows = 0;                          ///< rows that all runs were made of
+  std::vector<std::string> free_names;       ///< in the order of IndexEstimate::parameter
   std::vector<FeatureSensitivity> features;  ///< in target order
   std::vector<SampleRun> runs;  ///< of the rows above, repeats after the points of a row
   std::size_t num_runs = 0;     ///< without is_known
   std::size_t num_failed = 0;   ///< of these, in one test at least
 
-  bool has_indices() const;       ///< of one feature at least
+  bool has_indices() const;        ///< of one feature at least
   double widest_interval() const;  ///< of S and ST; NaN without
 };
 
 /// Runs one study.
 ///
 /// A run may fail in one test and not in another (partial simulators): only the features of that
-/// test are missing. Failed runs are left out, counted, and looked at for a pattern (failure_pattern.hpp); where they
-/// have one, or are too few to show one, every estimate gets bounds (missing_bounds.hpp). Rows are
-/// run in order, in batches; when a stop or the budget ends it, the result is that of the rows
-/// finished until then, exactly as if num_rows had been that number. Same arguments, same bits.
+/// test are missing. Failed runs are left out, counted, and looked at for a pattern
+/// (failure_pattern.hpp); where they have one, or are too few to show one, every estimate gets
+/// bounds (missing_bounds.hpp). Rows are run in order, in batches; when a stop or the budget ends
+/// it, the result is that of the rows finished until then, exactly as if num_rows had been that
+/// number. Same arguments, same bits.
 ///
 /// Hold-outs are features like the others here: nothing is fitted.
 /// @pre problems(parameters, options) is empty

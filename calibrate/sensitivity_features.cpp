@@ -36,8 +36,7 @@ void set_indices(const RowTerms& terms, const RowEstimates& estimates, FeatureSe
     f.indices[i].value = estimates.values[k];
     f.indices[i].low95 = estimates.low95[k];
     f.indices[i].high95 = estimates.high95[k];
-    f.indices[i].num_values =
-        static_cast<std::size_t>(terms.counts.row(num_noise_terms + k).sum());
+    f.indices[i].num_values = static_cast<std::size_t>(terms.counts.row(num_noise_terms + k).sum());
   }
 }
 
@@ -51,15 +50,13 @@ void set_noise(const RowTerms& terms, const SensitivityOptions& o, FeatureSensit
 }
 
 // Of rows that give no indices themselves.
-void set_noise_interval(const RowTerms& terms, const SensitivityOptions& o,
-                        FeatureSensitivity& f) {
+void set_noise_interval(const RowTerms& terms, const SensitivityOptions& o, FeatureSensitivity& f) {
   const auto share = [&](const Eigen::VectorXd& means, const Eigen::VectorXd& counts) {
     const NoiseSplit split = noise_split(means, counts, o.packings.num_packings);
     return Eigen::VectorXd::Constant(1, split.noise_share).eval();
   };
-  const RowEstimates estimates =
-      bootstrap(terms, share, o.num_resamples,
-                design_word(o.packings.first_seed, bootstrap_stream, 0));
+  const RowEstimates estimates = bootstrap(terms, share, o.num_resamples,
+                                           design_word(o.packings.first_seed, bootstrap_stream, 0));
   f.noise_low95 = estimates.low95[0];
   f.noise_high95 = estimates.high95[0];
 }
@@ -120,8 +117,7 @@ RowOutputs emulated_outputs(const Emulator& emulator, const std::vector<SampleRo
                      Eigen::MatrixXd::Constant(2, n, nan_value)};
   for (Eigen::Index r = 0; r < n; ++r)
     for (Eigen::Index i = 0; i < outputs.values.rows(); ++i)
-      outputs.values(i, r) =
-          emulator.predict_mean(rows[static_cast<std::size_t>(r)].unit.col(i));
+      outputs.values(i, r) = emulator.predict_mean(rows[static_cast<std::size_t>(r)].unit.col(i));
   return outputs;
 }
 
@@ -143,9 +139,8 @@ void analyse_rows(const std::vector<SampleRow>& rows, const RowOutputs& outputs,
                   : sobol_index_list(static_cast<std::size_t>(num_free));
   const RowTerms terms = terms_of(rows, outputs, o.method);
   const RowStatistic statistic = statistic_of(num_free, o);
-  const RowEstimates estimates =
-      bootstrap(terms, statistic, o.num_resamples,
-                design_word(o.packings.first_seed, bootstrap_stream, 0));
+  const RowEstimates estimates = bootstrap(terms, statistic, o.num_resamples,
+                                           design_word(o.packings.first_seed, bootstrap_stream, 0));
   set_indices(terms, estimates, f);
   set_noise(terms, o, f);
   const Eigen::Index last = estimates.values.size() - 1;
@@ -172,7 +167,8 @@ void analyse_emulator(const std::vector<SampleRow>& rows, const RowOutputs& outp
   const Emulator emulator(points, values, {});
   set_emulator_error(emulator, f);
   const std::uint64_t seed = design_word(o.packings.first_seed, integration_stream, 0);
-  const RowOutputs emulated = emulated_outputs(emulator, saltelli_rows(num_integration_rows, d, seed));
+  const RowOutputs emulated =
+      emulated_outputs(emulator, saltelli_rows(num_integration_rows, d, seed));
   const RowTerms terms = sobol_terms(emulated);
   f.indices = sobol_index_list(static_cast<std::size_t>(d));
   set_indices(terms, bootstrap(terms, sobol_statistic(d, 1), o.num_resamples, seed), f);

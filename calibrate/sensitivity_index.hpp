@@ -28,9 +28,9 @@ struct IndexEstimate {
   std::size_t parameter = 0;  ///< position among the free parameters
   std::size_t other = 0;      ///< the second one of second_order, > parameter; else == parameter
   double value = std::numeric_limits<double>::quiet_NaN();
-  double low95 = std::numeric_limits<double>::quiet_NaN();   ///< bootstrap over rows
+  double low95 = std::numeric_limits<double>::quiet_NaN();  ///< bootstrap over rows
   double high95 = std::numeric_limits<double>::quiet_NaN();
-  double bound_low = std::numeric_limits<double>::quiet_NaN();  ///< whatever the failed runs gave,
+  double bound_low = std::numeric_limits<double>::quiet_NaN();   ///< whatever the failed runs gave,
   double bound_high = std::numeric_limits<double>::quiet_NaN();  ///< see missing_bounds.hpp
   std::size_t num_values = 0;  ///< effects, differences or products averaged
 };

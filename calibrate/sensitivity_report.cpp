@@ -11,9 +11,9 @@
 namespace tilth {
 namespace {
 
-constexpr double wide_interval = 0.2;    // of S or ST: the estimate says little
-constexpr double low_q2 = 0.7;           // below it an emulator is no stand-in
-constexpr std::size_t num_reasons = 5;   // most frequent ones
+constexpr double wide_interval = 0.2;   // of S or ST: the estimate says little
+constexpr double low_q2 = 0.7;          // below it an emulator is no stand-in
+constexpr std::size_t num_reasons = 5;  // most frequent ones
 
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "-"; }
 std::string percent(double share) {
@@ -22,10 +22,9 @@ std::string percent(double share) {
 
 std::string with_interval(const IndexEstimate& i) {
   const bool is_bounded = std::isfinite(i.bound_low);
-  return fmt::format("{:>8} [{}, {}]{}", number(i.value), number(i.low95), number(i.high95),
-                     is_bounded ? fmt::format(" {{{}, {}}}", number(i.bound_low),
-                                              number(i.bound_high))
-                                : "");
+  return fmt::format(
+      "{:>8} [{}, {}]{}", number(i.value), number(i.low95), number(i.high95),
+      is_bounded ? fmt::format(" {{{}, {}}}", number(i.bound_low), number(i.bound_high)) : "");
 }
 
 // What a failure says up to its numbers: reasons that differ in them only are one.
@@ -36,8 +35,7 @@ std::string reason_of(const std::string& message) {
 void append_reasons(const SensitivitySummary& s, std::string& text) {
   std::map<std::string, int> counts;
   for (const SampleRun& run : s.runs)
-    if (run.has_failed() && !run.is_known)
-      ++counts[reason_of(run.evaluation.message)];
+    if (run.has_failed() && !run.is_known) ++counts[reason_of(run.evaluation.message)];
   std::vector<std::pair<int, std::string>> reasons;
   for (const auto& [reason, count] : counts) reasons.emplace_back(-count, reason);
   std::ranges::sort(reasons);
@@ -47,7 +45,8 @@ void append_reasons(const SensitivitySummary& s, std::string& text) {
 
 std::string verdict_sentence(FailureVerdict verdict) {
   switch (verdict) {
-    case FailureVerdict::none: return "";
+    case FailureVerdict::none:
+      return "";
     case FailureVerdict::no_pattern:
       return "; no dependence on a parameter seen: estimates on the completed runs stand";
     case FailureVerdict::too_few:
@@ -62,7 +61,8 @@ bool is_same(const FailurePattern& a, const FailurePattern& b) {
   const auto same_parameter = [](const ParameterFailures& x, const ParameterFailures& y) {
     return x.p_value == y.p_value;
   };
-  return a.num_failed == b.num_failed && std::ranges::equal(a.parameters, b.parameters, same_parameter);
+  return a.num_failed == b.num_failed &&
+         std::ranges::equal(a.parameters, b.parameters, same_parameter);
 }
 
 // `before`: the feature above, whose table is not printed twice.
@@ -100,16 +100,15 @@ void append_table(const SensitivitySummary& s, const FeatureSensitivity& f,
 void append_pairs(const SensitivitySummary& s, const FeatureSensitivity& f, std::string& text) {
   for (const IndexEstimate& i : f.indices)
     if (i.kind == IndexKind::second_order)
-      text += fmt::format("    Sij {} x {} {}\n", s.free_names[i.parameter],
-                          s.free_names[i.other], with_interval(i));
+      text += fmt::format("    Sij {} x {} {}\n", s.free_names[i.parameter], s.free_names[i.other],
+                          with_interval(i));
 }
 
 void append_emulator(const FeatureSensitivity& f, std::string& text) {
   text += fmt::format(
       "    emulator      : leave-one-out q2 = {}, root mean square error {}{}\n",
       number(f.emulator.q2), number(f.emulator.rms),
-      f.emulator.q2 >= low_q2 ? ""
-                              : fmt::format("; below {}: do not trust these indices", low_q2));
+      f.emulator.q2 >= low_q2 ? "" : fmt::format("; below {}: do not trust these indices", low_q2));
   text += "    intervals     : of the integration only; the emulator's own error is not in them\n";
 }
 
@@ -172,15 +171,16 @@ std::string noise_sentence(const FeatureSensitivity& f) {
   if (std::isnan(f.noise.noise_share)) return "not measured (one packing)";
   const double noise = f.noise.shared + f.noise.independent;
   return fmt::format("{} of the variance of one run [{}, {}]; {} of it alike for all parameters",
-                     percent(f.noise.noise_share), percent(f.noise_low95),
-                     percent(f.noise_high95), noise > 0 ? percent(f.noise.shared / noise) : "-");
+                     percent(f.noise.noise_share), percent(f.noise_low95), percent(f.noise_high95),
+                     noise > 0 ? percent(f.noise.shared / noise) : "-");
 }
 
 std::string advice(const SensitivitySummary& s) {
   const double widest = s.widest_interval();
   if (s.options.method != SensitivityMethod::sobol || !(widest > wide_interval)) return "";
   return fmt::format(
-      "{} rows are few: the widest interval of S or ST is {:.2g}. --extend doubles them; --emulator "
+      "{} rows are few: the widest interval of S or ST is {:.2g}. --extend doubles them; "
+      "--emulator "
       "estimates the indices from single points of the same design, at 1/{} of the runs per sample "
       "and with an error of its own that is printed.",
       s.num_rows, widest, 2 * s.free_names.size() + 2);

@@ -12,9 +12,9 @@ namespace tilth {
 
 /// What the reports say that the study does not know.
 struct SensitivityContext {
-  std::string subject;            ///< "loamy_sand"
-  std::string provenance;         ///< share of measured targets, one sentence
-  bool preview = false;           ///< labelled PREVIEW in every output
+  std::string subject;     ///< "loamy_sand"
+  std::string provenance;  ///< share of measured targets, one sentence
+  bool preview = false;    ///< labelled PREVIEW in every output
 };
 
 /// "PREVIEW (--quick): ..." or nothing.
@@ -39,8 +39,7 @@ std::string sensitivity_csv(const SensitivitySummary& summary, const Sensitivity
 
 /// One line per run: row, point, is_repeat, packing_seed, status, parameters, features (physical,
 /// SI), message, preview. Status partial: some of its tests failed.
-std::string samples_csv(const SensitivitySummary& summary,
-                        const std::vector<Parameter>& parameters,
+std::string samples_csv(const SensitivitySummary& summary, const std::vector<Parameter>& parameters,
                         const SensitivityContext& context);
 
 }  // namespace tilth

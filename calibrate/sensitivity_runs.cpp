@@ -19,11 +19,10 @@ constexpr std::size_t rows_per_packing = 2;
 std::vector<SampleRow> design_of(std::size_t num_free, const SensitivityOptions& o) {
   const int d = static_cast<int>(num_free);
   const std::uint64_t seed = o.packings.first_seed;
-  std::vector<SampleRow> rows = o.method == SensitivityMethod::morris
-                                    ? morris_rows(o.num_rows, d, o.levels, seed)
-                                : o.method == SensitivityMethod::sobol
-                                    ? saltelli_rows(o.num_rows, d, seed)
-                                    : saltelli_base_rows(o.num_rows, d, seed);
+  std::vector<SampleRow> rows =
+      o.method == SensitivityMethod::morris  ? morris_rows(o.num_rows, d, o.levels, seed)
+      : o.method == SensitivityMethod::sobol ? saltelli_rows(o.num_rows, d, seed)
+                                             : saltelli_base_rows(o.num_rows, d, seed);
   assign_packings(rows, o.packings);
   return rows;
 }
@@ -33,7 +32,11 @@ void plan_row(const std::vector<Parameter>& parameters, const SampleRow& row, st
               std::vector<SampleRun>& runs) {
   const auto last = static_cast<std::size_t>(row.unit.cols() - 1);
   const auto plan = [&](std::size_t point, bool is_repeat, std::uint64_t seed) {
-    runs.push_back({row_id, point, is_repeat, false, seed,
+    runs.push_back({row_id,
+                    point,
+                    is_repeat,
+                    false,
+                    seed,
                     physical_point(parameters, row.unit.col(static_cast<Eigen::Index>(point))),
                     {}});
   };
@@ -66,8 +69,8 @@ void run_in_batches(Evaluator& evaluator, const std::vector<Parameter>& paramete
     const std::size_t end = std::min(row + batch, study.rows.size());
     for (; row < end; ++row) plan_row(parameters, study.rows[row], row, study.runs);
     evaluate(evaluator, std::span(study.runs).subspan(first_run));
-    const auto refused = std::find_if(
-        study.runs.begin() + static_cast<std::ptrdiff_t>(first_run), study.runs.end(), is_skipped);
+    const auto refused = std::find_if(study.runs.begin() + static_cast<std::ptrdiff_t>(first_run),
+                                      study.runs.end(), is_skipped);
     if (refused == study.runs.end()) continue;
     study.rows.resize(refused->row);
     std::erase_if(study.runs, [&](const SampleRun& r) { return r.row >= study.rows.size(); });
@@ -87,8 +90,10 @@ void collect_outputs(const std::vector<Target>& targets, StudyRuns& study) {
     const Eigen::VectorXd features = transformed_features(targets, run.evaluation);
     for (std::size_t k = 0; k < targets.size(); ++k) {
       const double y = features[static_cast<Eigen::Index>(k)];
-      if (run.is_repeat) study.outputs[k].repeats(i == 0 ? 0 : 1, r) = y;
-      else study.outputs[k].values(i, r) = y;
+      if (run.is_repeat)
+        study.outputs[k].repeats(i == 0 ? 0 : 1, r) = y;
+      else
+        study.outputs[k].values(i, r) = y;
     }
   }
 }
@@ -114,12 +119,11 @@ StudyRuns run_rows(const std::vector<Parameter>& parameters, const std::vector<T
   Evaluator evaluator(simulator, asked, "sensitivity", ledger, TargetScope::all,
                       MissingFeatures::keep);
   run_in_batches(evaluator, parameters,
-                 rows_per_packing * static_cast<std::size_t>(options.packings.num_packings),
-                 study);
+                 rows_per_packing * static_cast<std::size_t>(options.packings.num_packings), study);
   collect_outputs(targets, study);
   const bool is_cut = study.rows.size() < static_cast<std::size_t>(options.num_rows);
-  if (is_cut) study.end = ledger.budget_spent ? SensitivityEnd::budget_spent
-                                              : SensitivityEnd::stopped;
+  if (is_cut)
+    study.end = ledger.budget_spent ? SensitivityEnd::budget_spent : SensitivityEnd::stopped;
   return study;
 }
 

@@ -25,9 +25,12 @@ std::string quoted_cell(const std::string& text) {
 
 std::string_view status_word(const SampleRun& run) {
   switch (run.evaluation.status) {
-    case EvaluationStatus::completed: return run.has_failed() ? "partial" : "completed";
-    case EvaluationStatus::failed: return "failed";
-    case EvaluationStatus::skipped: return "skipped";
+    case EvaluationStatus::completed:
+      return run.has_failed() ? "partial" : "completed";
+    case EvaluationStatus::failed:
+      return "failed";
+    case EvaluationStatus::skipped:
+      return "skipped";
   }
   return "";
 }

@@ -81,9 +81,8 @@ int run_sensitivity_command(const SensitivityCommandOptions& o, const std::strin
                           [](const std::string& line) { std::cerr << line << '\n'; });
   study.options.progress = [&display](const Progress& p) { display.show(p); };
   study.options.should_stop = [&session] { return session.should_stop(); };
-  const SensitivitySummary summary =
-      run_sensitivity(study.parameters, study.targets, study_simulator(study, session.context()),
-                      study.options);
+  const SensitivitySummary summary = run_sensitivity(
+      study.parameters, study.targets, study_simulator(study, session.context()), study.options);
   display.finish();
 
   // 3. write

@@ -13,8 +13,8 @@
 
 namespace tilth {
 
-/// What the file says beside the study. `reproduction` is the only part that differs between runs of
-/// the same study; what a run cost is in timing.json.
+/// What the file says beside the study. `reproduction` is the only part that differs between runs
+/// of the same study; what a run cost is in timing.json.
 struct SensitivityCardContext {
   SensitivityContext report;
   std::string soil_id;

@@ -32,10 +32,11 @@ std::string percent(double share) {
 
 std::string title_of(const SensitivitySummary& s, const FeatureSensitivity& f,
                      const SensitivityContext& context) {
-  return fmt::format("{}{}: {} (scale: {})\n{}\npacking noise {} of one run's variance, {} of its runs failed",
-                     context.preview ? "PREVIEW   " : "", context.subject, f.name,
-                     f.log_transform ? "ln(value)" : "value, SI unit", method_sentence(s),
-                     percent(f.noise.noise_share), percent(f.failures.share()));
+  return fmt::format(
+      "{}{}: {} (scale: {})\n{}\npacking noise {} of one run's variance, {} of its runs failed",
+      context.preview ? "PREVIEW   " : "", context.subject, f.name,
+      f.log_transform ? "ln(value)" : "value, SI unit", method_sentence(s),
+      percent(f.noise.noise_share), percent(f.failures.share()));
 }
 
 std::string morris_script(const SensitivitySummary& s, const FeatureSensitivity& f) {
@@ -49,24 +50,28 @@ std::string morris_script(const SensitivitySummary& s, const FeatureSensitivity&
     blocks += gnuplot_data(fmt::format("p{}", j),
                            {{x.value, y.value, end_or(x.low95, x.value), end_or(x.high95, x.value),
                              end_or(y.low95, y.value), end_or(y.high95, y.value)}});
-    plots += fmt::format(", $p{} using 1:2:3:4:5:6 with xyerrorbars pt {} ps 1.2 lw 1.6 lc rgb '{}' "
-                         "title {}",
-                         j, 5 + 2 * (j % 5), color_of(j), gnuplot_quoted(s.free_names[j]));
+    plots += fmt::format(
+        ", $p{} using 1:2:3:4:5:6 with xyerrorbars pt {} ps 1.2 lw 1.6 lc rgb '{}' "
+        "title {}",
+        j, 5 + 2 * (j % 5), color_of(j), gnuplot_quoted(s.free_names[j]));
     reach = std::max({reach, end_or(x.high95, x.value), end_or(y.high95, y.value)});
   }
   if (plots.empty()) return {};
-  std::string script = blocks + fmt::format(
-      "set xlabel 'mu_star: mean size of the elementary effects, per unit of the range'\n"
-      "set ylabel 'sigma: their scatter (curvature, interactions)'\n"
-      "set xrange [0:{0:.6g}]\nset yrange [0:{0:.6g}]\n",
-      reach > 0 ? 1.08 * reach : 1.0);
+  std::string script =
+      blocks +
+      fmt::format(
+          "set xlabel 'mu_star: mean size of the elementary effects, per unit of the range'\n"
+          "set ylabel 'sigma: their scatter (curvature, interactions)'\n"
+          "set xrange [0:{0:.6g}]\nset yrange [0:{0:.6g}]\n",
+          reach > 0 ? 1.08 * reach : 1.0);
   if (std::isfinite(f.noise_floor))
     script += fmt::format(
         "set object rectangle from 0, graph 0 to {:.6g}, graph 1 fc rgb '#444444' fs transparent "
         "solid 0.12 noborder behind\n",
         f.noise_floor);
-  return script + "plot x with lines dt 2 lc rgb '#888888' title 'sigma = mu_star', "
-                  "NaN with boxes fs solid 0.12 lc rgb '#444444' title 'mu_star of packing noise'" +
+  return script +
+         "plot x with lines dt 2 lc rgb '#888888' title 'sigma = mu_star', "
+         "NaN with boxes fs solid 0.12 lc rgb '#444444' title 'mu_star of packing noise'" +
          plots + "\n";
 }
 
@@ -87,7 +92,8 @@ std::vector<std::vector<double>> bars_of(const std::vector<IndexEstimate>& indic
 std::string bar_plot(const std::string& name, const char* color, const std::string& label) {
   return fmt::format(
       "${0} using 1:2:(0.3) with boxes fs solid 0.55 lc rgb '{1}' title {2}, "
-      "${0} using 1:2:3:4 with yerrorbars pt 7 ps 0.1 lw 1.6 lc rgb '#222222' notitle",
+      "${0} using 1:3:(0):($4-$3) with vectors heads size screen 0.006,90 lw 1.6 lc rgb '#222222' "
+      "notitle",
       name, color, gnuplot_quoted(label));
 }
 
@@ -103,8 +109,10 @@ std::string sobol_script(const SensitivitySummary& s, const FeatureSensitivity& 
   for (auto& row : bars_of(total, 0.25, true)) bounds.push_back(row);
   if (!bounds.empty()) {
     blocks += gnuplot_data("bounds", bounds);
-    plots += ", $bounds using 1:2:3:4 with yerrorbars pt 7 ps 0.1 lw 1.2 dt 3 lc rgb '#8f5fbf' title "
-             "'bounds of failed runs'";
+    plots +=
+        ", $bounds using 1:3:(0):($4-$3) with vectors heads size screen 0.006,90 lw 1.2 dt 3 lc "
+        "rgb '#8f5fbf' title "
+        "'bounds of failed runs'";
   }
   std::string tics;
   for (std::size_t j = 0; j < s.free_names.size(); ++j)
@@ -118,10 +126,11 @@ std::string sobol_script(const SensitivitySummary& s, const FeatureSensitivity& 
   }
   tics += fmt::format("{} {}", gnuplot_quoted("packing noise"), d);
   return blocks +
-         fmt::format("set pointintervalbox 0\nset xtics ({}) {}\nset ylabel 'share of the variance due to parameters'\n"
-                     "set xrange [-0.6:{:.2f}]\nset yrange [*<0:1.05<*]\nset xzeroaxis lt 1 lc rgb "
-                     "'#444444'\nplot {}\n",
-                     tics, s.free_names.size() > 4 ? "rotate by -20" : "", d + 0.6, plots);
+         fmt::format(
+             "set xtics ({}) {}\nset ylabel 'share of the variance due to parameters'\n"
+             "set xrange [-0.6:{:.2f}]\nset yrange [*<0:1.05<*]\nset xzeroaxis lt 1 lc rgb "
+             "'#444444'\nplot {}\n",
+             tics, s.free_names.size() > 4 ? "rotate by -20" : "", d + 0.6, plots);
 }
 
 std::string file_stem(const SensitivitySummary& s, const std::string& feature) {
@@ -137,8 +146,8 @@ std::string file_stem(const SensitivitySummary& s, const std::string& feature) {
 
 std::string draw_feature(const SensitivitySummary& s, const FeatureSensitivity& f,
                          const SensitivityContext& context, const std::filesystem::path& svg) {
-  const std::string body = s.options.method == SensitivityMethod::morris ? morris_script(s, f)
-                                                                         : sobol_script(s, f);
+  const std::string body =
+      s.options.method == SensitivityMethod::morris ? morris_script(s, f) : sobol_script(s, f);
   if (body.empty()) return f.name + ": there is no index to draw";
   return run_gnuplot(gnuplot_header(svg, 620) +
                          fmt::format("set title {}\n", gnuplot_quoted(title_of(s, f, context))) +

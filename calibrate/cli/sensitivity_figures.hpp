@@ -18,7 +18,8 @@ namespace tilth {
 std::string draw_feature(const SensitivitySummary& summary, const FeatureSensitivity& feature,
                          const SensitivityContext& context, const std::filesystem::path& svg);
 
-/// figures/<method>_<feature>.svg for every feature that has indices. @return reasons of those missing
+/// figures/<method>_<feature>.svg for every feature that has indices. @return reasons of those
+/// missing
 std::vector<std::string> draw_sensitivity(const SensitivitySummary& summary,
                                           const SensitivityContext& context,
                                           const std::filesystem::path& run_folder);

@@ -118,8 +118,7 @@ void check_inputs(const SavedStudy& saved, const SensitivityStudy& study, Proble
       study.soil.id, saved.soil_id));
 }
 
-void check_options(const SensitivityCommandOptions& o, SensitivityStudy& study,
-                   Problems& found) {
+void check_options(const SensitivityCommandOptions& o, SensitivityStudy& study, Problems& found) {
   append(problems(o.session), found);
   if (o.max_runs) study.options.max_simulations = *o.max_runs;
   // Without a soil the rest is still checked, against one free parameter.

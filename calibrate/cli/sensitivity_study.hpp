@@ -25,7 +25,8 @@ struct SensitivityStudy {
 };
 
 /// Reads soil, config and, with --extend, the study that is extended. An extension keeps method,
-/// levels, packings, seed and fidelity, and refuses changed inputs: its first rows are the old ones.
+/// levels, packings, seed and fidelity, and refuses changed inputs: its first rows are the old
+/// ones.
 /// @throws ConfigError with everything wrong, of all of these at once
 SensitivityStudy read_study(const SensitivityCommandOptions& options);
 

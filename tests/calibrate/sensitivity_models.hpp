@@ -24,9 +24,9 @@ inline double ishigami(const Eigen::VectorXd& x) {
 struct ExactIndices {
   std::vector<double> first, total;
 };
-inline const ExactIndices ishigami_indices = {{0.31390519114781146, 0.4424111447900409, 0.0},
-                                              {0.5575888552099592, 0.4424111447900409,
-                                               0.24368366406214773}};
+inline const ExactIndices ishigami_indices = {
+    {0.31390519114781146, 0.4424111447900409, 0.0},
+    {0.5575888552099592, 0.4424111447900409, 0.24368366406214773}};
 inline constexpr double ishigami_variance = 13.844587940719254;
 inline constexpr double ishigami_s13 = 0.24368366406214773;
 

@@ -24,8 +24,7 @@ std::vector<SampleRow> all_trajectories(int levels) {
       for (int c = 0; c < levels; ++c) {
         std::vector<int> order = {0, 1, 2};
         do {
-          rows.emplace_back().unit =
-              morris_trajectory(std::vector<int>{a, b, c}, order, levels);
+          rows.emplace_back().unit = morris_trajectory(std::vector<int>{a, b, c}, order, levels);
         } while (std::ranges::next_permutation(order).found);
       }
   return rows;
@@ -76,8 +75,7 @@ TEST_CASE("Morris: all trajectories of a grid give its exact effects", "[calibra
     const std::vector<double> sigma = {6.248796, 7.875, 8.837132};
     for (Eigen::Index j = 0; j < 3; ++j) {
       CHECK_THAT(found[j], WithinAbs(mu[static_cast<std::size_t>(j)], 1e-6));
-      CHECK_THAT(found[6 + j] * to_population,
-                 WithinAbs(sigma[static_cast<std::size_t>(j)], 1e-6));
+      CHECK_THAT(found[6 + j] * to_population, WithinAbs(sigma[static_cast<std::size_t>(j)], 1e-6));
     }
   }
 }
@@ -86,9 +84,8 @@ TEST_CASE("Morris: mu_star of Ishigami's second input is 7.875 for any trajector
           "[calibrate][sensitivity]") {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SensitivityOptions options = study(SensitivityMethod::morris, 6, seed);
-    const SensitivitySummary s =
-        run_sensitivity(ishigami_parameters(), {plain_target("y")},
-                        simulator_of(one_output(ishigami)), options);
+    const SensitivitySummary s = run_sensitivity(ishigami_parameters(), {plain_target("y")},
+                                                 simulator_of(one_output(ishigami)), options);
     CHECK_THAT(index_of(s, IndexKind::mu_star, 1).value, WithinRel(7.875, 1e-12));
     CHECK(s.features.front().noise_floor == 0.0);
   }
@@ -97,9 +94,9 @@ TEST_CASE("Morris: mu_star of Ishigami's second input is 7.875 for any trajector
 TEST_CASE("Morris: a linear function gives its slopes and no sigma, whatever the packing adds",
           "[calibrate][sensitivity]") {
   const auto linear = [](const Eigen::VectorXd& x) { return 2.0 * x[0] - 3.0 * x[1]; };
-  const SensitivitySummary s = run_sensitivity(
-      unit_parameters(2), {plain_target("y")}, noisy(linear, 5.0, NoiseKind::shared),
-      study(SensitivityMethod::morris, 8));
+  const SensitivitySummary s =
+      run_sensitivity(unit_parameters(2), {plain_target("y")},
+                      noisy(linear, 5.0, NoiseKind::shared), study(SensitivityMethod::morris, 8));
   // To rounding: a packing's shift is in no difference.
   CHECK_THAT(index_of(s, IndexKind::mu, 0).value, WithinRel(2.0, 1e-12));
   CHECK_THAT(index_of(s, IndexKind::mu, 1).value, WithinRel(-3.0, 1e-12));
@@ -124,7 +121,8 @@ TEST_CASE("Morris: noise of single runs is taken out of sigma and shown as a flo
   CHECK_THAT(f.noise.shared + f.noise.independent, WithinRel(sd * sd, 0.09));
   // mu_star of a parameter that does nothing is the floor: sd of |d| / sqrt(n) = 1 %, of v 1 %.
   CHECK_THAT(index_of(s, IndexKind::mu_star, 1).value, WithinRel(f.noise_floor, 0.06));
-  CHECK_THAT(f.noise_floor, WithinRel(2.0 * sd * 198.0 / 100.0 / std::sqrt(std::numbers::pi), 0.05));
+  CHECK_THAT(f.noise_floor,
+             WithinRel(2.0 * sd * 198.0 / 100.0 / std::sqrt(std::numbers::pi), 0.05));
   // sd(d) = sqrt(2) sd / delta = 1.4 before the correction, 0 +- sqrt(0.09 * 1.4^2) after.
   CHECK(index_of(s, IndexKind::sigma, 0).value < 0.42);
   CHECK(index_of(s, IndexKind::sigma, 1).value < 0.42);

@@ -29,24 +29,23 @@ struct Sample {
     ++n;
   }
   double mean() const { return sum / n; }
-  double standard_error() const {
-    return std::sqrt((squares / n - mean() * mean()) / (n - 1));
-  }
+  double standard_error() const { return std::sqrt((squares / n - mean() * mean()) / (n - 1)); }
 };
 
 }  // namespace
 
-TEST_CASE("Sobol: with seed noise of a quarter of the variance and 5 % of the runs deleted at "
-          "random the indices have no bias",
-          "[calibrate][sensitivity]") {
+TEST_CASE(
+    "Sobol: with seed noise of a quarter of the variance and 5 % of the runs deleted at "
+    "random the indices have no bias",
+    "[calibrate][sensitivity]") {
   const double sd = std::sqrt(ishigami_variance / 4.0);
   for (const NoiseKind kind : {NoiseKind::shared, NoiseKind::independent}) {
     std::vector<Sample> first(3), total(3);
     Sample share, failed, pair;
     for (std::uint64_t k = 0; k < 16; ++k) {
       const Simulator model = failing(noisy(ishigami, sd, kind, 100 + k), unlucky);
-      const SensitivitySummary s = sobol_study(ishigami_parameters(), model,
-                                               study(SensitivityMethod::sobol, 512, 1 + 50 * k, 32));
+      const SensitivitySummary s = sobol_study(
+          ishigami_parameters(), model, study(SensitivityMethod::sobol, 512, 1 + 50 * k, 32));
       for (std::size_t j = 0; j < 3; ++j) {
         first[j].add(index_of(s, IndexKind::first_order, j).value);
         total[j].add(index_of(s, IndexKind::total, j).value);
@@ -59,10 +58,10 @@ TEST_CASE("Sobol: with seed noise of a quarter of the variance and 5 % of the ru
     for (std::size_t j = 0; j < 3; ++j) {
       INFO((kind == NoiseKind::shared ? "shared" : "independent") << ", parameter " << j + 1);
       // Three standard errors of the mean of 16 studies, and 0.005 for the bias of a ratio.
-      CHECK_THAT(first[j].mean(), WithinAbs(ishigami_indices.first[j],
-                                            3.0 * first[j].standard_error() + 0.005));
-      CHECK_THAT(total[j].mean(), WithinAbs(ishigami_indices.total[j],
-                                            3.0 * total[j].standard_error() + 0.005));
+      CHECK_THAT(first[j].mean(),
+                 WithinAbs(ishigami_indices.first[j], 3.0 * first[j].standard_error() + 0.005));
+      CHECK_THAT(total[j].mean(),
+                 WithinAbs(ishigami_indices.total[j], 3.0 * total[j].standard_error() + 0.005));
       CHECK(first[j].standard_error() < 0.02);  // else the line above would say nothing
       CHECK(total[j].standard_error() < 0.02);
     }
@@ -74,7 +73,8 @@ TEST_CASE("Sobol: with seed noise of a quarter of the variance and 5 % of the ru
   }
 }
 
-TEST_CASE("Sobol: noise left uncorrected would be far outside the bars", "[calibrate][sensitivity]") {
+TEST_CASE("Sobol: noise left uncorrected would be far outside the bars",
+          "[calibrate][sensitivity]") {
   // One packing: nothing is measured, so nothing is taken out, and the report has to say so.
   const double sd = std::sqrt(ishigami_variance / 4.0);
   const SensitivitySummary s =
@@ -86,10 +86,11 @@ TEST_CASE("Sobol: noise left uncorrected would be far outside the bars", "[calib
   CHECK_THAT(index_of(s, IndexKind::total, 2).value, WithinAbs(0.395, 0.04));
 }
 
-TEST_CASE("Sobol: failures in a region are noticed, named and bounded", "[calibrate][sensitivity]") {
-  const SensitivitySummary s =
-      sobol_study(ishigami_parameters(), failing(noisy(ishigami, 1.0, NoiseKind::shared), in_a_corner),
-                  study(SensitivityMethod::sobol, 512));
+TEST_CASE("Sobol: failures in a region are noticed, named and bounded",
+          "[calibrate][sensitivity]") {
+  const SensitivitySummary s = sobol_study(
+      ishigami_parameters(), failing(noisy(ishigami, 1.0, NoiseKind::shared), in_a_corner),
+      study(SensitivityMethod::sobol, 512));
   const FeatureSensitivity& f = s.features.front();
   CHECK_THAT(f.failures.share(), WithinAbs(0.05, 0.005));
   CHECK(f.failures.verdict == FailureVerdict::concentrated);
@@ -115,10 +116,9 @@ TEST_CASE("Sobol: bounds contain what the completed runs alone get wrong",
   // x1 matters most where the runs fail: without them ST_1 is 0.70 instead of 0.93.
   const auto edge = [](const Eigen::VectorXd& x) { return x[1] + 4.0 * std::pow(x[0], 4); };
   const auto at_the_edge = [](const Eigen::VectorXd& x) { return x[0] > 0.8; };
-  const SensitivitySummary cut =
-      sobol_study(unit_parameters(2),
-                  failing(noisy(edge, 0.1, NoiseKind::independent), at_the_edge),
-                  study(SensitivityMethod::sobol, 256));
+  const SensitivitySummary cut = sobol_study(
+      unit_parameters(2), failing(noisy(edge, 0.1, NoiseKind::independent), at_the_edge),
+      study(SensitivityMethod::sobol, 256));
   const double of_x1 = 16.0 * (1.0 / 9.0 - 1.0 / 25.0);
   const double truth = of_x1 / (of_x1 + 1.0 / 12.0);
   const IndexEstimate found = index_of(cut, IndexKind::total, 0);

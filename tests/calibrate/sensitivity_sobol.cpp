@@ -30,8 +30,9 @@ struct GCase {
 TEST_CASE("Sobol: Ishigami's indices lie within three standard errors of the exact ones",
           "[calibrate][sensitivity]") {
   const int n = 16384;
-  const SensitivitySummary s = sobol_study(ishigami_parameters(), simulator_of(one_output(ishigami)),
-                                           study(SensitivityMethod::sobol, n));
+  const SensitivitySummary s =
+      sobol_study(ishigami_parameters(), simulator_of(one_output(ishigami)),
+                  study(SensitivityMethod::sobol, n));
   // Variances of the estimates at n = 1e5 independent rows, as another program documents them.
   const std::vector<double> first_variance = {1.985e-5, 1.693e-5, 2.504e-5};
   const std::vector<double> total_variance = {2.830e-5, 2.464e-5, 2.598e-5};
@@ -50,7 +51,8 @@ TEST_CASE("Sobol: Ishigami's indices lie within three standard errors of the exa
   CHECK(s.features.front().noise.noise_share == 0.0);
 }
 
-TEST_CASE("Sobol: the g function's indices, four sets of coefficients", "[calibrate][sensitivity]") {
+TEST_CASE("Sobol: the g function's indices, four sets of coefficients",
+          "[calibrate][sensitivity]") {
   const std::vector<GCase> cases = {
       {{0, 1, 4.5, 9, 99, 99, 99, 99},
        0.4654244319,

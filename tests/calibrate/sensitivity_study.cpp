@@ -49,9 +49,9 @@ TEST_CASE("Sobol: bootstrap intervals of an additive function hold the exact ind
   int num_hits = 0;
   const int num_trials = 60;
   for (int k = 0; k < num_trials; ++k) {
-    const SensitivitySummary s = run_sensitivity(
-        unit_parameters(9), {plain_target("y")}, simulator_of(sum),
-        study(SensitivityMethod::sobol, 100, 1 + static_cast<std::uint64_t>(k)));
+    const SensitivitySummary s =
+        run_sensitivity(unit_parameters(9), {plain_target("y")}, simulator_of(sum),
+                        study(SensitivityMethod::sobol, 100, 1 + static_cast<std::uint64_t>(k)));
     const IndexEstimate first = index_of(s, IndexKind::first_order, 1);
     const IndexEstimate total = index_of(s, IndexKind::total, 0);
     num_hits += first.low95 <= 0.8 && 0.8 <= first.high95 ? 1 : 0;
@@ -103,14 +103,15 @@ TEST_CASE("Sensitivity: a budget ends it on a whole row", "[calibrate][sensitivi
   CHECK(s.has_indices());
 }
 
-TEST_CASE("Sensitivity: if all runs fail that is said of every feature", "[calibrate][sensitivity]") {
+TEST_CASE("Sensitivity: if all runs fail that is said of every feature",
+          "[calibrate][sensitivity]") {
   const SensitivitySummary s =
       run_one(failing(simulator_of(one_output(additive)), [](const auto&) { return true; }),
               study(SensitivityMethod::morris, 8));
   CHECK_FALSE(s.has_indices());
   CHECK(s.features.front().no_indices == "all runs failed");
-  CHECK_THAT(sensitivity_report_text(s, {}), Contains("all runs failed") && Contains("100 %") &&
-                                                 Contains("the packing exploded"));
+  CHECK_THAT(sensitivity_report_text(s, {}),
+             Contains("all runs failed") && Contains("100 %") && Contains("the packing exploded"));
 }
 
 TEST_CASE("Sensitivity: a test that fails takes no other test's features with it",
@@ -164,8 +165,8 @@ TEST_CASE("Sensitivity: an emulator of few points finds the indices and says it 
   const auto smooth = [](const Eigen::VectorXd& x) { return x[0] + 2.0 * x[1] * x[1]; };
   // V1 = 1/12, V2 = 4 (1/5 - 1/9) = 16/45.
   const double share = (1.0 / 12.0) / (1.0 / 12.0 + 16.0 / 45.0);
-  const SensitivitySummary s = run_one(noisy(smooth, 0.05, NoiseKind::independent),
-                                       study(SensitivityMethod::emulator, 48));
+  const SensitivitySummary s =
+      run_one(noisy(smooth, 0.05, NoiseKind::independent), study(SensitivityMethod::emulator, 48));
   CHECK(s.num_runs == 48 + 24);  // every second point twice
   CHECK_THAT(index_of(s, IndexKind::first_order, 0).value, WithinAbs(share, 0.02));
   CHECK_THAT(index_of(s, IndexKind::total, 1).value, WithinAbs(1.0 - share, 0.02));
@@ -178,7 +179,8 @@ TEST_CASE("Sensitivity: an emulator of few points finds the indices and says it 
   CHECK_THAT(sensitivity_csv(s, {}), Contains("sobol by emulator"));
 }
 
-TEST_CASE("Sensitivity: everything wrong with a study is said at once", "[calibrate][sensitivity]") {
+TEST_CASE("Sensitivity: everything wrong with a study is said at once",
+          "[calibrate][sensitivity]") {
   SensitivityOptions options = study(SensitivityMethod::morris, 2);
   options.levels = 5;
   options.packings.num_packings = 0;
@@ -196,16 +198,17 @@ TEST_CASE("Sensitivity: everything wrong with a study is said at once", "[calibr
 TEST_CASE("Sensitivity report: level count, noise share, intervals and PREVIEW are in it",
           "[calibrate][sensitivity]") {
   const SensitivityContext context{"loamy_sand", "measured targets: 0 of 1", true};
-  const SensitivitySummary morris = run_one(noisy(additive, 0.1, NoiseKind::independent),
-                                            study(SensitivityMethod::morris, 16));
+  const SensitivitySummary morris =
+      run_one(noisy(additive, 0.1, NoiseKind::independent), study(SensitivityMethod::morris, 16));
   CHECK_THAT(sensitivity_report_text(morris, context),
              Contains("PREVIEW") && Contains("4 levels") && Contains("packing noise : ") &&
-                 Contains("of the variance of one run") && Contains("0 failed in a test or more (0 %)") &&
+                 Contains("of the variance of one run") &&
+                 Contains("0 failed in a test or more (0 %)") &&
                  Contains("mu_star of a parameter without effect"));
   CHECK_THAT(sensitivity_csv(morris, context), Contains("PREVIEW"));
   CHECK_THAT(samples_csv(morris, unit_parameters(2), context), Contains("PREVIEW"));
-  const SensitivitySummary sobol = run_one(noisy(additive, 0.1, NoiseKind::independent),
-                                           study(SensitivityMethod::sobol, 16));
+  const SensitivitySummary sobol =
+      run_one(noisy(additive, 0.1, NoiseKind::independent), study(SensitivityMethod::sobol, 16));
   CHECK_THAT(sensitivity_report_text(sobol, context),
              Contains("Sij x1 x x2") && Contains("--emulator"));
 }

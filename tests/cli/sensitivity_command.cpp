@@ -25,7 +25,13 @@ Json read(const fs::path& folder) { return Json::parse(read_text(folder / "sensi
 std::vector<std::string> tiny_study(const TempFolder& folder, const std::string& soil,
                                     const std::vector<std::string>& more) {
   std::vector<std::string> arguments = {
-      "sensitivity", "--data", soil, "--quick", "--packings", "1", "--config",
+      "sensitivity",
+      "--data",
+      soil,
+      "--quick",
+      "--packings",
+      "1",
+      "--config",
       folder.write("held.json", R"({"schema": "tilth.fit/1", "parameters": [
           {"name": "bond_modulus_Pa", "value": 3e6}, {"name": "friction", "value": 0.5}]})")};
   arguments.insert(arguments.end(), more.begin(), more.end());
@@ -104,8 +110,8 @@ TEST_CASE("Sensitivity command: Morris writes tables and figures; --extend keeps
 
   // The first runs keep every bit, on other threads too.
   const std::string before = read_text(path / "samples.csv");
-  const ProgramRun more = run(tiny_study(
-      folder, soil, {"--extend", "--samples", "5", "--threads", "2", "--out", out}));
+  const ProgramRun more =
+      run(tiny_study(folder, soil, {"--extend", "--samples", "5", "--threads", "2", "--out", out}));
   INFO(more.errors);
   CHECK(more.exit_code == exit_done);
   CHECK(read(path)["study"]["samples_finished"] == 5);
@@ -121,8 +127,9 @@ TEST_CASE("Sensitivity command: Morris writes tables and figures; --extend keeps
 TEST_CASE("Sensitivity command: Sobol from an emulator says that it is one", "[cli][sensitivity]") {
   const TempFolder folder("sensitivity_emulator");
   const std::string soil = one_test_soil(folder);
-  const ProgramRun r = run(tiny_study(
-      folder, soil, {"--method", "sobol", "--emulator", "--samples", "5", "--out", folder / "run"}));
+  const ProgramRun r = run(
+      tiny_study(folder, soil,
+                 {"--method", "sobol", "--emulator", "--samples", "5", "--out", folder / "run"}));
   INFO(r.errors);
   CHECK(r.exit_code == exit_done);
   CHECK(r.output.find("EMULATOR") != std::string::npos);
@@ -137,8 +144,8 @@ TEST_CASE("Sensitivity command: Ctrl-C leaves the result of the finished rows, e
   const TempFolder folder("sensitivity_interrupt");
   const std::string soil = one_test_soil(folder);
   const ProgramRun r = run_and_signal(
-      tiny_study(folder, soil, {"--method", "sobol", "--samples", "4096", "--threads", "1", "--out",
-                                "run"}),
+      tiny_study(folder, soil,
+                 {"--method", "sobol", "--samples", "4096", "--threads", "1", "--out", "run"}),
       folder.path(), "simulations", SIGINT);
   INFO(r.errors);
   CHECK(r.exit_code == exit_budget);
