@@ -40,12 +40,13 @@ bool is_blocked(SimulationLedger& ledger) {
 }
 
 Evaluator::Evaluator(Simulator simulator, std::vector<Target> targets, std::string label,
-                     SimulationLedger& ledger, TargetScope scope)
+                     SimulationLedger& ledger, TargetScope scope, MissingFeatures missing)
     : simulator_(std::move(simulator)),
       targets_(std::move(targets)),
       label_(std::move(label)),
       ledger_(ledger),
-      scope_(scope) {}
+      scope_(scope),
+      missing_(missing) {}
 
 std::vector<Evaluation> Evaluator::evaluate(const Eigen::MatrixXd& parameters, std::uint64_t seed) {
   return evaluate(parameters,
@@ -133,6 +134,10 @@ void Evaluator::check(Evaluation& evaluation) const {
       value = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
+    if (!std::isfinite(value) && missing_ == MissingFeatures::keep) {
+      value = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
     if (!std::isfinite(value)) {
       return fail(fmt::format("{} = {}: not finite", targets_[k].name, value));
     }
@@ -141,6 +146,8 @@ void Evaluator::check(Evaluation& evaluation) const {
                               targets_[k].name, value));
     }
   }
+  if (missing_ == MissingFeatures::keep && evaluation.features.array().isNaN().all())
+    fail(evaluation.message.empty() ? "no feature is finite" : evaluation.message);
 }
 
 void Evaluator::book(const Key& key, const Evaluation& evaluation) {

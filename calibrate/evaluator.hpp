@@ -71,6 +71,12 @@ bool is_blocked(SimulationLedger& ledger);
 /// Which targets a simulator answers; the features of the others are NaN and mean "not asked".
 enum class TargetScope { all, fitted, holdouts };
 
+/// What a NaN among the features asked for means.
+enum class MissingFeatures {
+  fail_run,  ///< the run has failed
+  keep       ///< this feature is missing, the others stand (partial simulators)
+};
+
 /// A Simulator with a memory. Results are remembered by (parameters, seed), bit for bit, so
 /// nothing is simulated twice. When the ledger is blocked, remembered results are still given
 /// and everything else is `skipped`.
@@ -79,10 +85,12 @@ class Evaluator {
   /// @param label  "search", "confirm" or "hold-outs", for the record of failures
   /// @param ledger must outlive the evaluator
   Evaluator(Simulator simulator, std::vector<Target> targets, std::string label,
-            SimulationLedger& ledger, TargetScope scope = TargetScope::all);
+            SimulationLedger& ledger, TargetScope scope = TargetScope::all,
+            MissingFeatures missing = MissingFeatures::fail_run);
 
   /// One Evaluation per column, in order. A completed run has finite features of the targets in
-  /// scope, and positive ones for fitted targets with log_transform; otherwise it is failed.
+  /// scope, and positive ones for fitted targets with log_transform; otherwise it is failed. With
+  /// MissingFeatures::keep one finite feature is enough; what is not finite becomes NaN.
   /// All of one call may run side by side.
   /// @shape parameters (num_parameters, num_members), physical; seeds (num_members)
   /// @throws std::runtime_error if the simulator does not return one Evaluation per column
@@ -105,6 +113,7 @@ class Evaluator {
   std::string label_;
   SimulationLedger& ledger_;
   TargetScope scope_;
+  MissingFeatures missing_;
   std::map<Key, Evaluation> memory_;
 };
 

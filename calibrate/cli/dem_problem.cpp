@@ -24,21 +24,28 @@ void check_setup(const TestConfig& config, const TestCondition& condition) {
 
 /// @param results  one per test
 Evaluation evaluation_of(const std::vector<PlannedTest>& tests,
-                         std::span<const ExperimentResult> results, std::size_t num_targets) {
+                         std::span<const ExperimentResult> results, std::size_t num_targets,
+                         FailedTest failed_test) {
   Evaluation e;
+  bool any_completed = false;
   e.features = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(num_targets),
                                          std::numeric_limits<double>::quiet_NaN());
   for (std::size_t t = 0; t < tests.size(); ++t) {
     const ExperimentResult& r = results[t];
     if (r.status != RunStatus::completed) {
       const bool stopped = r.status == RunStatus::stopped;
-      return {stopped ? EvaluationStatus::skipped : EvaluationStatus::failed,
-              {},
-              fmt::format("{} ({}): {}", test_id(tests[t].config), name_of(r.status), r.message)};
+      const std::string reason =
+          fmt::format("{} ({}): {}", test_id(tests[t].config), name_of(r.status), r.message);
+      if (stopped) return {EvaluationStatus::skipped, {}, reason};
+      if (failed_test == FailedTest::fails_member) return {EvaluationStatus::failed, {}, reason};
+      e.message += (e.message.empty() ? "" : "; ") + reason;
+      continue;
     }
+    any_completed = true;
     for (const PlannedTest::Answer& a : tests[t].answers)
       e.features[static_cast<Eigen::Index>(a.target)] = r.feature(a.feature);
   }
+  if (!any_completed) return {EvaluationStatus::failed, {}, e.message};
   e.status = EvaluationStatus::completed;
   return e;
 }
@@ -82,8 +89,8 @@ SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values) {
 }
 
 Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
-                        TargetScope scope) {
-  return [&soil, &context, tests = plan_tests(soil, fidelity, scope)](
+                        TargetScope scope, FailedTest failed_test) {
+  return [&soil, &context, failed_test, tests = plan_tests(soil, fidelity, scope)](
              const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
     std::vector<TestRun> runs;
     for (std::size_t m = 0; m < seeds.size(); ++m) {
@@ -96,8 +103,9 @@ Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContex
     const std::vector<ExperimentResult> results = run_tests(runs, context);
     std::vector<Evaluation> evaluations;
     for (std::size_t m = 0; m < seeds.size(); ++m)
-      evaluations.push_back(evaluation_of(
-          tests, std::span(results).subspan(m * tests.size(), tests.size()), soil.targets.size()));
+      evaluations.push_back(
+          evaluation_of(tests, std::span(results).subspan(m * tests.size(), tests.size()),
+                        soil.targets.size(), failed_test));
     return evaluations;
   };
 }

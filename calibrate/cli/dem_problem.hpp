@@ -28,10 +28,17 @@ std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity,
 /// @throws ConfigError if a parameter of the table is not one of the model
 SoilMaterial material_of(const SoilData& soil, const Eigen::VectorXd& values);
 
+/// What a failed test does to the other tests of its member.
+enum class FailedTest {
+  fails_member,   ///< the member has failed, for the first failing test's reason
+  leaves_others,  ///< its features are NaN, the reasons are the message: a partial simulator
+};
+
 /// Simulator over the planned tests: features in target order, members of one seed in the same packs. A member
-/// fails with the first failing test's reason; targets out of scope are NaN. Soil and context must
+/// in which no test completed has failed; targets out of scope are NaN. Soil and context must
 /// outlive it.
 Simulator dem_simulator(const SoilData& soil, Fidelity fidelity, const RunContext& context,
-                        TargetScope scope = TargetScope::all);
+                        TargetScope scope = TargetScope::all,
+                        FailedTest failed_test = FailedTest::fails_member);
 
 }  // namespace tilth

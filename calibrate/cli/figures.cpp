@@ -6,13 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
+
+#include "calibrate/cli/gnuplot.hpp"
 
 namespace tilth {
 namespace {
-
-constexpr const char* colors[] = {"#1b6ca8", "#d1495b", "#3d8b37", "#8f5fbf", "#c77d0a", "#444444"};
 
 /// More rows than this stand close, with one-line labels.
 constexpr std::size_t many_rows = 30;
@@ -23,61 +22,22 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (c == '\n') out += "\\n";
-    else out += c;
-  }
-  return out + "\"";
-}
-
-/// Underscores are subscripts in gnuplot's enhanced text; file and parameter names are not.
-/// The key stands in a margin of its own below the axis.
-std::string header(const std::filesystem::path& svg, int height) {
-  return fmt::format(
-      "set terminal svg size 960,{} dynamic noenhanced font 'DejaVu Sans,13' background '#ffffff'\n"
-      "set output {}\nset grid lc rgb '#dddddd'\nset border lc rgb '#444444'\n"
-      "set key at screen 0.5, screen {:.3f} center horizontal maxrows 2\nset bmargin 6.5\n",
-      height, quoted(svg.string()), 24.0 / height);
-}
-
-std::string run_gnuplot(const std::string& script, const std::filesystem::path& svg) {
-  std::filesystem::create_directories(svg.parent_path());
-  FILE* pipe = ::popen("gnuplot 2>/dev/null", "w");
-  if (!pipe) return "gnuplot could not be started";
-  std::fwrite(script.data(), 1, script.size(), pipe);
-  const int status = ::pclose(pipe);
-  if (status == 0 && std::filesystem::exists(svg)) return {};
-  return "gnuplot is not installed or failed (apt-get install gnuplot-nox)";
-}
-
-std::string data_block(const std::string& name, const std::vector<std::vector<double>>& rows) {
-  std::string text = fmt::format("${} << EOD\n", name);
-  for (const auto& row : rows) {
-    for (const double v : row) text += fmt::format("{:.7g} ", v);
-    text += '\n';
-  }
-  return text + "EOD\n";
-}
-
 }  // namespace
 
 std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& svg) {
-  std::string script = header(svg, 520);
+  std::string script = gnuplot_header(svg, 520);
   script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n",
-                        quoted(figure.title), quoted(figure.x_label), quoted(figure.y_label));
+                        gnuplot_quoted(figure.title), gnuplot_quoted(figure.x_label), gnuplot_quoted(figure.y_label));
   std::vector<std::string> plots;
   for (std::size_t k = 0; k < figure.marks.size(); ++k) {
     const FigureMark& m = figure.marks[k];
-    const char* color = colors[(k + 3) % std::size(colors)];
+    const char* color = figure_colors[(k + 3) % std::size(figure_colors)];
     script += fmt::format(
         "set object rectangle from graph 0, first {:.7g} to graph 1, first {:.7g} "
         "fc rgb '{}' fs transparent solid 0.10 noborder behind\n",
         m.y_low * figure.y_scale, m.y_high * figure.y_scale, color);
     plots.push_back(fmt::format("{:.7g} with lines lw 2 dt 2 lc rgb '{}' title {}",
-                                m.y * figure.y_scale, color, quoted(m.label)));
+                                m.y * figure.y_scale, color, gnuplot_quoted(m.label)));
   }
   std::set<int> in_key;
   for (std::size_t k = 0; k < figure.series.size(); ++k) {
@@ -86,11 +46,11 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
     for (const auto& row : s.curve.rows)
       rows.push_back({row[figure.x_column] * figure.x_scale, row[figure.y_column] * figure.y_scale});
     if (rows.empty()) continue;
-    script += data_block(fmt::format("d{}", k), rows);
+    script += gnuplot_data(fmt::format("d{}", k), rows);
     const bool first = in_key.insert(s.color).second;
     plots.push_back(fmt::format("$d{} using 1:2 with lines lw 1.6 lc rgb '{}' {}", k,
-                                colors[static_cast<std::size_t>(s.color) % std::size(colors)],
-                                first ? "title " + quoted(s.label) : "notitle"));
+                                figure_colors[static_cast<std::size_t>(s.color) % std::size(figure_colors)],
+                                first ? "title " + gnuplot_quoted(s.label) : "notitle"));
   }
   if (plots.empty()) return "there is no curve to draw";
   script += figure.y_from_zero ? "set yrange [0:*]\n" : "set yrange [*:*]\nset xzeroaxis\n";
@@ -103,14 +63,14 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
                          const std::filesystem::path& svg) {
   if (rows.empty()) return "there is no target to draw";
   const int row_height = rows.size() > many_rows ? 20 : 54;
-  std::string script = header(svg, 180 + row_height * static_cast<int>(rows.size()));
+  std::string script = gnuplot_header(svg, 180 + row_height * static_cast<int>(rows.size()));
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double y = static_cast<double>(rows.size() - k);
     const TargetRow& r = rows[k];
-    tics += fmt::format("{}{} {}", k ? ", " : "", quoted(rows.size() > many_rows ? one_line(r.label) : r.label), y);
+    tics += fmt::format("{}{} {}", k ? ", " : "", gnuplot_quoted(rows.size() > many_rows ? one_line(r.label) : r.label), y);
     if (!std::isfinite(r.residual)) continue;
     (r.holdout ? held : fitted).push_back({r.residual, y, r.seed_sd});
     reach = std::max(reach, std::abs(r.residual) + r.seed_sd + 0.5);
@@ -122,19 +82,19 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
       "set object rectangle from -1, graph 0 to 1, graph 1 fc rgb '#3d8b37' fs transparent solid "
       "0.10 noborder behind\n"
       "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb '#444444'\n",
-      quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6);
+      gnuplot_quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6);
   std::string plot = "plot ";
   if (!fitted.empty()) {
-    script += data_block("fitted", fitted);
+    script += gnuplot_data("fitted", fitted);
     plot += fmt::format("$fitted using 1:2:3 with xerrorbars pt 7 ps 1 lw 1.6 lc rgb '{}' title "
                         "'fitted target'",
-                        colors[0]);
+                        figure_colors[0]);
   }
   if (!held.empty()) {
-    script += data_block("held", held);
+    script += gnuplot_data("held", held);
     plot += fmt::format("{}$held using 1:2:3 with xerrorbars pt 6 ps 1 lw 1.6 lc rgb '{}' title "
                         "'held out (predicted)'",
-                        fitted.empty() ? "" : ", ", colors[1]);
+                        fitted.empty() ? "" : ", ", figure_colors[1]);
   }
   if (fitted.empty() && held.empty()) return "no target was simulated";
   return run_gnuplot(script + plot + "\n", svg);

@@ -12,6 +12,7 @@
 #include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_plan.hpp"
+#include "calibrate/cli/command_sensitivity.hpp"
 #include "calibrate/cli/command_simulate.hpp"
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -47,6 +48,7 @@ int run_program(int argc, const char* const* argv) {
   WorkerOptions worker_options;
   CacheOptions cache_options;
   PlanOptions plan_options;
+  SensitivityCommandOptions sensitivity_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -64,6 +66,9 @@ int run_program(int argc, const char* const* argv) {
   CLI::App* worker = app.add_subcommand("worker", "simulations on request, line by line");
   worker->group("");  // not for people
   add_worker_options(*worker, worker_options);
+  CLI::App* sensitivity =
+      app.add_subcommand("sensitivity", "which parameters move which features (Morris, Sobol)");
+  add_sensitivity_options(*sensitivity, sensitivity_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -75,6 +80,8 @@ int run_program(int argc, const char* const* argv) {
     if (check->parsed()) return run_check(check_options);
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
     if (features->parsed()) return run_features(features_options);
+    if (sensitivity->parsed())
+      return run_sensitivity_command(sensitivity_options, command_line);
     if (exporting->parsed()) return run_export(export_options);
     if (plan->parsed()) return run_plan(plan_options);
     if (cache->parsed()) return run_cache(cache_options);

@@ -18,6 +18,10 @@ list(
   calibrate/run_broker.cpp
   calibrate/run_store.cpp
   calibrate/secants.cpp
+  calibrate/sensitivity_morris.cpp
+  calibrate/sensitivity_noise.cpp
+  calibrate/sensitivity_sobol.cpp
+  calibrate/sensitivity_study.cpp
   calibrate/sobol_design.cpp
   calibrate/soil_curves.cpp
   calibrate/soil_data_mistakes.cpp
