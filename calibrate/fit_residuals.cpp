@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 the Tilth authors
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calibrate/fit_stages.hpp"
 
@@ -72,6 +74,20 @@ Eigen::MatrixXd residual_jacobian(const FitContext& context,
     jacobian(row++, static_cast<Eigen::Index>(j)) = coordinate_span(p) / *p.prior_sigma;
   }
   return jacobian;
+}
+
+int degrees_of_freedom(const FitContext& context) {
+  const std::size_t num_observations = context.fitted.size() + num_priors(context);
+  return static_cast<int>(num_observations) - static_cast<int>(context.free.size());
+}
+
+double sigma_scale(const FitContext& context) {
+  if (!context.options.rescale_sigma) return 1.0;
+  const int freedom = degrees_of_freedom(context);
+  if (freedom < 1) return not_known;
+  // An exact fit would give parameters without any error, and 0 / 0 on the way.
+  const double least = std::numeric_limits<double>::min();
+  return std::sqrt(std::max(least, context.optimum->chi_square / freedom));
 }
 
 void record_cost(FitContext& context, double chi_square) {

@@ -182,7 +182,9 @@ TEST_CASE("Fit: a combination the data do not fix gets words instead of an error
   REQUIRE(summary.null_directions.size() == 1);
   REQUIRE_THAT(summary.null_directions[0],
                Contains("modulus_Pa / strength_Pa") || Contains("strength_Pa / modulus_Pa"));
-  REQUIRE(summary.parameters[0].verdict == ParameterVerdict::flat);
+  // ln modulus + ln strength is fixed: a modulus 8 % above its lower bound needs a strength above 1e5.
+  REQUIRE(summary.parameters[0].verdict == ParameterVerdict::bound_limited);
+  REQUIRE(summary.parameters[0].limited_by == "strength_Pa");
   REQUIRE_THAT(summary.parameters[0].no_error_bar, Contains("do not fix"));
   REQUIRE(std::isnan(summary.parameters[0].lo95));
   REQUIRE(summary.parameters[2].verdict == ParameterVerdict::identified);
@@ -215,7 +217,7 @@ TEST_CASE("Fit: a value cut off by its bound is flagged and its interval stays i
       fit(parameters, soil_targets(0.05, 0), simulator_of(soil_formula), nullptr, small_options());
   REQUIRE(summary.parameters[2].value == 0.4);
   REQUIRE(summary.parameters[2].hi95 == 0.4);
-  REQUIRE(summary.parameters[2].verdict == ParameterVerdict::bound_limited);
+  REQUIRE(summary.parameters[2].verdict == ParameterVerdict::one_sided);
   REQUIRE(summary.parameters[0].verdict == ParameterVerdict::identified);
 }
 

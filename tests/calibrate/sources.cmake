@@ -11,6 +11,8 @@ list(
   calibrate/fit_coverage.cpp
   calibrate/fit_failures.cpp
   calibrate/fit_report.cpp
+  calibrate/nist.cpp
+  calibrate/nist_problems.cpp
   calibrate/optimise_ceres.cpp
   calibrate/optimise_nlopt.cpp
   calibrate/parallel.cpp
