@@ -19,7 +19,7 @@ constexpr double most_step = 0.25;
 // How one parameter is moved: forward and backward members in pairs, or one side only.
 struct Moves {
   bool central = true;
-  double sign = 1.0;              // of a one-sided step
+  double sign = 1.0;                  // of a one-sided step
   std::vector<Eigen::Index> columns;  // of the batch, in order of the halvings
 };
 
@@ -129,8 +129,7 @@ std::optional<Secants> extrapolated_derivatives(Evaluator& evaluator,
   result.jacobian = Eigen::MatrixXd::Zero(result.base.size(), unit.size());
   for (std::size_t j = 0; j < free.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    const auto found =
-        quotients(moves[j], means, batch.points(), parameters[free[j]], column);
+    const auto found = quotients(moves[j], means, batch.points(), parameters[free[j]], column);
     if (found.empty()) {
       result.frozen.push_back(j);
       continue;

@@ -120,7 +120,10 @@ void report_counts(FitContext& context) {
   summary.num_simulations = context.ledger.num_done;
   summary.stages = context.ledger.stages;
   summary.failures = context.ledger.failures;
-  if (context.optimum) summary.chi_square = context.optimum->chi_square;
+  if (context.optimum) {
+    summary.chi_square = context.optimum->chi_square;
+    if (!context.fitted.empty()) summary.r_squared = r_squared(context);
+  }
   const KnownPoint& start = context.points.front();
   if (start.features) {
     summary.chi_square_start = fit_residuals(context, start.unit, *start.features, 1).squaredNorm();

@@ -60,8 +60,8 @@ LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen) {
   problem.upper = Eigen::VectorXd::Ones(d);
   problem.num_residuals = static_cast<int>(context.fitted.size() + num_priors(context));
   problem.evaluate = [&context, &frozen, seeds](const Eigen::VectorXd& unit,
-                                                       Eigen::VectorXd& residuals,
-                                                       Eigen::MatrixXd* jacobian) {
+                                                Eigen::VectorXd& residuals,
+                                                Eigen::MatrixXd* jacobian) {
     const auto num_seeds = static_cast<int>(seeds.size());
     if (jacobian == nullptr) {
       const auto mean =

@@ -113,14 +113,15 @@ void report_near_null_direction(FitContext& context) {
     names += fmt::format("{}{} ({:.0f} times)", names.empty() ? "" : ", ", p.name, p.inflation);
   }
   if (names.empty()) return;
-  context.summary.warnings.push_back(fmt::format(
-      "nearly unidentifiable: {}; in brackets, how much longer the error bar is than with all other "
-      "parameters held",
-      names));
+  context.summary.warnings.push_back(
+      fmt::format("nearly unidentifiable: {}; in brackets, how much longer the error bar is than "
+                  "with all other "
+                  "parameters held",
+                  names));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(context.uncertainty->covariance);
   const Eigen::VectorXd weakest = solver.eigenvectors().rightCols(1);
-  context.summary.near_null_directions.push_back(
-      "the data barely fix " + describe_direction(context.parameters, weakest));
+  context.summary.near_null_directions.push_back("the data barely fix " +
+                                                 describe_direction(context.parameters, weakest));
 }
 
 // Covariance to the coordinate; correlations where both parameters have an error bar.

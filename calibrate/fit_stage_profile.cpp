@@ -13,7 +13,7 @@
 namespace tilth {
 namespace {
 
-constexpr int num_probes = 256;       // of the emulated model, to look for separate regions
+constexpr int num_probes = 256;         // of the emulated model, to look for separate regions
 constexpr double emulator_step = 1e-4;  // of the cube; emulators are smooth
 constexpr int family_size = 12;
 constexpr double family_distance = 1e-3;
@@ -156,9 +156,8 @@ void report_family(FitContext& context) {
     }
   }
   for (const Eigen::Index i : farthest_columns(points, family_size, family_distance)) {
-    context.summary.equivalence_family.push_back(
-        {physical_point(context.parameters, points.col(i)),
-         differences[static_cast<std::size_t>(i)]});
+    context.summary.equivalence_family.push_back({physical_point(context.parameters, points.col(i)),
+                                                  differences[static_cast<std::size_t>(i)]});
   }
 }
 
@@ -169,9 +168,9 @@ void profile_on_emulators(FitContext& context) {
   const auto num_free = static_cast<int>(context.free.size());
   draw_all(context, emulated_problem(context, model),
            shifted_sobol_points(num_probes, num_free, context.options.seed));
-  context.summary.profile_source =
-      fmt::format("emulators of the search runs, shifted onto the measured mean at the optimum and "
-                  "widened by their own uncertainty");
+  context.summary.profile_source = fmt::format(
+      "emulators of the search runs, shifted onto the measured mean at the optimum and "
+      "widened by their own uncertainty");
 }
 
 void profile_on_simulator(FitContext& context) {

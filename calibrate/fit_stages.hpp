@@ -85,6 +85,8 @@ double derivative_error_share(const FitOptions& options);
 /// What sigma is multiplied by: 1, or sqrt(reduced chi-square of the optimum) with rescale_sigma.
 /// NaN if that is asked for without degrees of freedom.
 double sigma_scale(const FitContext& context);
+/// See FitSummary::r_squared. @pre optimum exists
+double r_squared(const FitContext& context);
 /// Observations and priors minus free parameters.
 int degrees_of_freedom(const FitContext& context);
 /// Variance of T of the model's mean over num_seeds packings, per target: v / num_seeds; once

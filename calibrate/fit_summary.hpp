@@ -162,6 +162,9 @@ struct FitSummary {
   double chi_square_start = not_known;  ///< start values, first search seed
   double chi_square = not_known;  ///< optimum, search seeds, priors included: what was minimised
   double chi_square_fresh = not_known;  ///< optimum, fresh seeds, fitted targets only
+  /// 1 - chi-square / weighted squares about the weighted mean target; NaN unless all fitted targets
+  /// are one statistic, since numbers of different units have no mean
+  double r_squared = not_known;
   std::size_t num_free = 0;
   std::size_t num_observations = 0;  ///< fitted targets + priors of free parameters
   std::size_t num_independent = 0;   ///< observation groups + priors of free parameters

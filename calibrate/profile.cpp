@@ -38,7 +38,8 @@ class Profiler {
         options_(options) {}
 
   // The least |r|^2 at this value, from a neighbour's end or a better candidate.
-  std::optional<ProfilePoint> at(double value, const Eigen::VectorXd& neighbour, double reach) const {
+  std::optional<ProfilePoint> at(double value, const Eigen::VectorXd& neighbour,
+                                 double reach) const {
     std::optional<ProfilePoint> best = refit(value, neighbour);
     const std::optional<Eigen::VectorXd> other = best_candidate(value, reach, best);
     if (other) {
@@ -124,7 +125,8 @@ class Profiler {
     std::vector<bool> free(static_cast<std::size_t>(optimum_.size()), true);
     bool any = false;
     for (Eigen::Index i = 0; i < optimum_.size(); ++i) {
-      const bool at_bound = point.unit[i] <= problem_.lower[i] || point.unit[i] >= problem_.upper[i];
+      const bool at_bound =
+          point.unit[i] <= problem_.lower[i] || point.unit[i] >= problem_.upper[i];
       if (i == held_ || !at_bound) continue;
       free[static_cast<std::size_t>(i)] = false;
       any = true;
@@ -137,7 +139,8 @@ class Profiler {
     const Eigen::VectorXd gradient = jacobian.transpose() * residuals;
     for (Eigen::Index i = 0; i < optimum_.size(); ++i) {
       if (i == held_ || free[static_cast<std::size_t>(i)]) continue;
-      const bool pushes = point.unit[i] <= problem_.lower[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
+      const bool pushes =
+          point.unit[i] <= problem_.lower[i] ? gradient[i] > 0.0 : gradient[i] < 0.0;
       if (!pushes) continue;
       free[static_cast<std::size_t>(i)] = true;
       const double rest = curvature(jacobian, free) * distance * distance;
@@ -163,12 +166,11 @@ std::vector<double> values_on_side(double centre, double sign, double standard_e
   if (standard_error > 0.0 && standard_error < large_error) {
     for (const double step : error_steps) values.push_back(centre + sign * step * standard_error);
   }
-  std::erase_if(values, [&](double v) {
-    return v < 0.0 || v > 1.0 || sign * (v - centre) < same_point;
-  });
+  std::erase_if(values,
+                [&](double v) { return v < 0.0 || v > 1.0 || sign * (v - centre) < same_point; });
   std::ranges::sort(values, {}, [&](double v) { return sign * v; });
-  const auto twins = std::ranges::unique(
-      values, [](double a, double b) { return std::abs(a - b) < same_point; });
+  const auto twins =
+      std::ranges::unique(values, [](double a, double b) { return std::abs(a - b) < same_point; });
   values.erase(twins.begin(), twins.end());
   return values;
 }
@@ -213,7 +215,8 @@ Profile draw_profile(const LeastSquaresProblem& problem, const Eigen::VectorXd& 
   for (const double sign : {-1.0, 1.0}) {
     Profile side = {*centre};
     const double reach = 0.5 / options.num_grid;
-    for (const double value : values_on_side(optimum[held], sign, standard_error, options.num_grid)) {
+    for (const double value :
+         values_on_side(optimum[held], sign, standard_error, options.num_grid)) {
       if (const auto point = profiler.at(value, side.back().unit, reach)) side.push_back(*point);
     }
     close_in(profiler, side, held, centre->chi_square, options.level);
@@ -228,7 +231,8 @@ ProfileReading read_profile(const Profile& profile, int held, double least, doub
   if (profile.size() < 2) return reading;
   const auto difference = [&](std::size_t i) { return profile[i].chi_square - least; };
   std::size_t centre = 0;
-  for (std::size_t i = 1; i < profile.size(); ++i) centre = difference(i) < difference(centre) ? i : centre;
+  for (std::size_t i = 1; i < profile.size(); ++i)
+    centre = difference(i) < difference(centre) ? i : centre;
   const auto limits = [&](const ProfilePoint& point) {
     if (point.at_bound >= 0 && point.if_lifted < 0.25 * level) reading.limited_by = point.at_bound;
   };

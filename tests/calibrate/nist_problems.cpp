@@ -114,8 +114,8 @@ std::vector<NistProblem> nist_problems() {
   }
   for (const auto& row : table("parameters.csv")) {
     by_name(problems, row[0])
-        .parameters.push_back({row[1], {std::stod(row[2]), std::stod(row[3])}, std::stod(row[4]),
-                               std::stod(row[5])});
+        .parameters.push_back(
+            {row[1], {std::stod(row[2]), std::stod(row[3])}, std::stod(row[4]), std::stod(row[5])});
   }
   for (const auto& row : table("observations.csv")) {
     NistProblem& problem = by_name(problems, row[0]);
