@@ -29,7 +29,7 @@ std::string reason_without_error_bar(const FitContext& context, std::size_t j) {
   }
   if (!context.uncertainty) return "the runs around the optimum could not be had";
   if (is_frozen(context, j)) return "the runs on both sides of it failed";
-  if (context.uncertainty->null_share[static_cast<Eigen::Index>(j)] > max_null_share) {
+  if (!context.uncertainty->is_fixed(static_cast<Eigen::Index>(j))) {
     return "the data do not fix it, see the null directions";
   }
   return "";
@@ -137,7 +137,7 @@ void report_covariance(FitContext& context) {
   for (Eigen::Index i = 0; i < q; ++i) {
     for (Eigen::Index j = 0; j < q; ++j) {
       const auto has_bar = [&](Eigen::Index k) {
-        return context.uncertainty->null_share[k] <= max_null_share &&
+        return context.uncertainty->is_fixed(k) &&
                !is_frozen(context, static_cast<std::size_t>(k));
       };
       if (!has_bar(i) || !has_bar(j)) continue;

@@ -100,9 +100,7 @@ LeastSquaresProblem rescaled_problem(FitContext& context, FrozenCounts& frozen) 
 
 double unit_error(const FitContext& context, std::size_t j) {
   const auto index = static_cast<Eigen::Index>(j);
-  if (!context.uncertainty || context.uncertainty->null_share[index] > max_null_share) {
-    return not_known;
-  }
+  if (!context.uncertainty || !context.uncertainty->is_fixed(index)) return not_known;
   return std::sqrt(context.uncertainty->covariance(index, index));
 }
 
@@ -168,9 +166,9 @@ void profile_on_emulators(FitContext& context) {
   const auto num_free = static_cast<int>(context.free.size());
   draw_all(context, emulated_problem(context, model),
            shifted_sobol_points(num_probes, num_free, context.options.seed));
-  context.summary.profile_source = fmt::format(
+  context.summary.profile_source =
       "emulators of the search runs, shifted onto the measured mean at the optimum and "
-      "widened by their own uncertainty");
+      "widened by their own uncertainty";
 }
 
 void profile_on_simulator(FitContext& context) {
@@ -200,6 +198,11 @@ void run_profiles(FitContext& context) {
     profile_on_simulator(context);
   } else {
     profile_on_emulators(context);
+  }
+  if (context.options.profiles == ProfileSource::simulator && is_blocked(context.ledger)) {
+    // Half a profile looks like an open end.
+    context.profiles.clear();
+    context.summary.warnings.emplace_back("no profiles: stopped, or the budget is spent");
   }
   if (context.profiles.empty()) return;
   report_profiles(context);

@@ -13,7 +13,8 @@ namespace {
 constexpr double error_steps[] = {0.5, 1.0, 1.5, 2.0, 3.0};
 constexpr double large_error = 0.25;  // of the cube: the even points do
 constexpr double same_point = 1e-9;
-constexpr int num_refinements = 3;
+constexpr int max_refinements = 16;
+constexpr double close_enough = 0.01;  // of the level
 
 Eigen::VectorXd without(const Eigen::VectorXd& all, Eigen::Index held) {
   Eigen::VectorXd others(all.size() - 1);
@@ -184,22 +185,23 @@ double crossing(const ProfilePoint& a, const ProfilePoint& b, Eigen::Index held,
   return a.unit[held] + std::clamp(share, 0.0, 1.0) * (b.unit[held] - a.unit[held]);
 }
 
-// Adds points where the profile first crosses the level on one side.
+// Adds points where the profile first crosses the level on one side: by interpolation and, since a
+// bound makes a kink, every second time in the middle.
 void close_in(const Profiler& profiler, Profile& side, Eigen::Index held, double least,
               double level) {
-  for (int i = 0; i < num_refinements; ++i) {
+  for (int i = 0; i < max_refinements; ++i) {
     const auto outside = std::ranges::find_if(
         side, [&](const ProfilePoint& p) { return p.chi_square - least > level; });
     if (outside == side.begin() || outside == side.end()) return;
     const ProfilePoint& inside = *(outside - 1);
-    const double value = crossing(inside, *outside, held, least, level);
-    const double gap = std::abs(outside->unit[held] - inside.unit[held]);
-    const bool is_close = std::min(std::abs(value - inside.unit[held]),
-                                   std::abs(value - outside->unit[held])) < 1e-3 * gap;
-    if (gap < same_point || is_close) return;
+    if (std::abs(outside->unit[held] - inside.unit[held]) < same_point) return;
+    const double value = i % 2 == 0 ? crossing(inside, *outside, held, least, level)
+                                    : 0.5 * (inside.unit[held] + outside->unit[held]);
     const auto point = profiler.at(value, inside.unit, 0.0);
     if (!point) return;
+    const bool is_close = std::abs(point->chi_square - least - level) < close_enough * level;
     side.insert(outside, *point);
+    if (is_close) return;
   }
 }
 

@@ -27,6 +27,10 @@ std::string term(const std::string& name, double coefficient) {
 
 }  // namespace
 
+bool LinearUncertainty::is_fixed(Eigen::Index j) const {
+  return null_share[j] <= max_null_share && null_share[j] <= covariance(j, j);
+}
+
 LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
                                      const Eigen::MatrixXd& residual_covariance,
                                      double relative_limit) {

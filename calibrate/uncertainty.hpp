@@ -13,16 +13,19 @@
 
 namespace tilth {
 
+/// A parameter with more than this share in null directions gets no error bar.
+inline constexpr double max_null_share = 0.05;
+
 /// In the unit cube of the free parameters.
 struct LinearUncertainty {
   Eigen::MatrixXd covariance;  ///< (q, q), of the directions that are fixed by the data
   Eigen::MatrixXd null_space;  ///< (q, num_null), orthonormal columns: the other directions
   Eigen::VectorXd null_share;  ///< (q), sum of squares of a parameter's row of null_space
+  /// May parameter j have an error bar? Its share in null directions is small, and a walk of length 1
+  /// along them moves it by less than its standard error, which knows nothing of them.
+  bool is_fixed(Eigen::Index j) const;
   Eigen::MatrixXd gain;        ///< (q, num_residuals), parameters moved by residuals: C = G W G'
 };
-
-/// A parameter with more than this share in null directions gets no error bar.
-inline constexpr double max_null_share = 0.05;
 
 /// Covariance of the least-squares estimate from the Jacobian at the optimum.
 ///

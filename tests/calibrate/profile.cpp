@@ -3,6 +3,7 @@
 // Profile likelihoods and what is read from them.
 #include "calibrate/profile.hpp"
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <cmath>
 
