@@ -26,14 +26,19 @@ std::string error_words(const FittedParameter& p) {
 }
 
 std::string interval_words(double low, double high) {
-  return fmt::format("[{}, {}]", report_number(low), report_number(high));
+  const auto end = [](double v) { return std::isnan(v) ? "-" : fmt::format("{:.4g}", v); };
+  return fmt::format("[{}, {}]", end(low), end(high));
 }
 
-// Does an end of the profile interval lie elsewhere, or is it missing?
+// Does an end of the profile interval lie elsewhere, in the coordinate? One that is not reached
+// stands for the bound.
 bool differs(const FittedParameter& p) {
-  const double allowed = notable_difference * (p.hi95 - p.lo95);
-  return !(std::abs(p.profile_lo95 - p.lo95) <= allowed) ||
-         !(std::abs(p.profile_hi95 - p.hi95) <= allowed);
+  const auto coordinate = [&](double v) { return p.log_scale ? std::log(v) : v; };
+  const double low = std::isnan(p.profile_lo95) ? p.lower : p.profile_lo95;
+  const double high = std::isnan(p.profile_hi95) ? p.upper : p.profile_hi95;
+  const double allowed = notable_difference * (coordinate(p.hi95) - coordinate(p.lo95));
+  return !(std::abs(coordinate(low) - coordinate(p.lo95)) <= allowed) ||
+         !(std::abs(coordinate(high) - coordinate(p.hi95)) <= allowed);
 }
 
 std::size_t name_width(const FitSummary& s) {
@@ -45,7 +50,7 @@ std::size_t name_width(const FitSummary& s) {
 // 95 % intervals of both kinds, and the two parts of each standard error.
 void interval_table(const FitSummary& s, std::string& text) {
   const std::size_t width = std::max<std::size_t>(name_width(s), 14);
-  report_line(text, "");
+  text += '\n';
   report_line(text, "{:<{}} {:<26} {:<28} {:>15} {:>15}", "95 % intervals", width, "linear",
               s.profiles.empty() ? "profile: none" : "profile", "se from targets", "from packings");
   bool any_differs = false;
@@ -61,11 +66,12 @@ void interval_table(const FitSummary& s, std::string& text) {
                 short_report_number(physical_error(p, p.standard_error_targets)),
                 short_report_number(physical_error(p, p.standard_error_packings)));
   }
-  if (any_differs) {
-    report_line(text,
-                "* differ by more than a tenth of the interval; \"-\": the 95 % level is not");
-    report_line(text, "  reached inside the bounds. Verdicts go by the profile.");
+  if (!s.profiles.empty()) {
+    report_line(
+        text, "\"-\": the 95 % level is not reached inside the bounds; verdicts go by the profile");
   }
+  if (any_differs)
+    report_line(text, "*: an end differs by more than a tenth of the linear interval");
 }
 
 }  // namespace
