@@ -61,6 +61,7 @@ void prepare(FitContext& context) {
   summary.num_free = context.free.size();
   summary.num_observations = context.fitted.size() + num_priors(context);
   summary.num_independent = num_independent_observations(context.targets) + num_priors(context);
+  summary.degrees_of_freedom = degrees_of_freedom(context);
   summary.holdout_limit = context.options.holdout_limit;
 
   SimulationLedger& ledger = context.ledger;
@@ -83,8 +84,9 @@ void run_stages(FitContext& context) {
   context.ledger.num_reserved = 0;
   begin_stage(context.ledger, "uncertainty");
   update_uncertainty(context);  // 7. covariance at the optimum
+  run_profiles(context);        // 8. how far each may move while the others follow
   report_parameters(context);
-  run_fresh(context);  // 8. seeds and hold-outs the fit has never seen
+  run_fresh(context);  // 9. seeds and hold-outs the fit has never seen
 }
 
 void set_termination(FitContext& context) {
@@ -119,7 +121,10 @@ void report_counts(FitContext& context) {
   summary.num_simulations = context.ledger.num_done;
   summary.stages = context.ledger.stages;
   summary.failures = context.ledger.failures;
-  if (context.optimum) summary.chi_square = context.optimum->chi_square;
+  if (context.optimum) {
+    summary.chi_square = context.optimum->chi_square;
+    if (!context.fitted.empty()) summary.r_squared = r_squared(context);
+  }
   const KnownPoint& start = context.points.front();
   if (start.features) {
     summary.chi_square_start = fit_residuals(context, start.unit, *start.features, 1).squaredNorm();

@@ -25,6 +25,26 @@ FitOptions quick_fit_options() {
   return options;
 }
 
+FitOptions smooth_fit_options() {
+  FitOptions options;
+  options.num_design = 0;
+  options.num_noise_seeds = 0;
+  options.num_search_seeds = 1;
+  options.num_fresh_seeds = 0;
+  options.num_rounds = 0;
+  options.num_starts = 1;
+  options.max_iterations = 2000;
+  options.max_bias_rounds = 0;
+  options.chi_square_tolerance = 0.0;
+  options.function_tolerance = 1e-15;
+  options.parameter_tolerance = 1e-15;
+  options.gradient_tolerance = 0.0;
+  options.derivatives = DerivativeRule::extrapolated;
+  options.profiles = ProfileSource::simulator;
+  options.max_simulations = 1'000'000;
+  return options;
+}
+
 std::vector<std::string> problems(const FitOptions& options) {
   std::vector<std::string> found;
   const auto at_least = [&](const char* name, int value, int least) {
@@ -34,6 +54,11 @@ std::vector<std::string> problems(const FitOptions& options) {
   const auto positive = [&](const char* name, double value) {
     if (!(std::isfinite(value) && value > 0.0)) {
       found.push_back(fmt::format("{} = {}: must be finite and positive", name, value));
+    }
+  };
+  const auto not_negative = [&](const char* name, double value) {
+    if (!(std::isfinite(value) && value >= 0.0)) {
+      found.push_back(fmt::format("{} = {}: must be finite and not negative", name, value));
     }
   };
   at_least("num_design", options.num_design, 0);
@@ -46,7 +71,10 @@ std::vector<std::string> problems(const FitOptions& options) {
   at_least("num_starts", options.num_starts, 1);
   at_least("max_iterations", options.max_iterations, 1);
   at_least("max_bias_rounds", options.max_bias_rounds, 0);
-  positive("chi_square_tolerance", options.chi_square_tolerance);
+  not_negative("chi_square_tolerance", options.chi_square_tolerance);
+  not_negative("function_tolerance", options.function_tolerance);
+  not_negative("parameter_tolerance", options.parameter_tolerance);
+  not_negative("gradient_tolerance", options.gradient_tolerance);
   positive("log_step", options.log_step);
   positive("linear_step", options.linear_step);
   positive("holdout_limit", options.holdout_limit);

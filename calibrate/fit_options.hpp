@@ -13,6 +13,19 @@
 
 namespace tilth {
 
+/// How the local search takes derivatives.
+enum class DerivativeRule {
+  secants,       ///< one wide step per parameter: for simulators with noise
+  extrapolated,  ///< extrapolated to step zero, sixteen runs per parameter: smooth and noise-free
+};
+
+/// On what profile likelihoods are drawn.
+enum class ProfileSource {
+  none,
+  emulators,  ///< of the search runs: costs no simulation; none if there are too few runs
+  simulator,  ///< the search simulator on the search seeds: for cheap ones
+};
+
 /// One simulation is one parameter set on one seed. Seeds are consecutive numbers, so that
 /// packings can be named and kept: search and noise use seed, seed + 1, ...; the confirming
 /// simulator seed + 1000, ...; the fresh seeds at the end seed + 2000, ...
@@ -30,7 +43,11 @@ struct FitOptions {
   int max_bias_rounds = 2;    ///< bias, refit, bias, refit
   /// A local search has converged when an iteration lowers chi-square by less than this. 0.01 is
   /// a tenth of a standard error at most.
-  double chi_square_tolerance = 0.01;
+  double chi_square_tolerance = 0.01;  ///< 0 = off
+  double function_tolerance = 1e-6;   ///< ... or when it changes chi-square by less than this share
+  double parameter_tolerance = 1e-5;  ///< ... or by a step below this share of the unit cube
+  double gradient_tolerance = 1e-10;  ///< ... or when no slope of chi-square / 2 is larger
+  DerivativeRule derivatives = DerivativeRule::secants;
   /// Half-width of a central secant where the parameter states none: in ln v if log_scale ...
   /// Peaks of whole shear curves are chaotic even on a fixed packing: 15 % steps raise the signal
   /// threefold over 5 % ones while the response stays nearly straight.
@@ -38,6 +55,11 @@ struct FitOptions {
   /// ... else as a share of upper - lower.
   double linear_step = 0.08;
   std::size_t max_simulations = 2000;
+  /// The sigma of the targets are known up to a common factor only: standard errors are multiplied
+  /// by sqrt(reduced chi-square) and intervals use Student's t. Needs more observations than free
+  /// parameters. False: sigma is absolute.
+  bool rescale_sigma = false;
+  ProfileSource profiles = ProfileSource::emulators;
   double holdout_limit = 2.0;  ///< pass mark: root mean square of the hold-out residuals
   bool force = false;          ///< fit even if there are more free parameters than observations
   std::function<bool()> should_stop;              ///< asked before every batch; may be empty
@@ -46,6 +68,10 @@ struct FitOptions {
 
 /// A preset for a first look: fewer points, one packing, one start. Same stages, wider intervals.
 FitOptions quick_fit_options();
+
+/// A preset for cheap simulators that are smooth and free of noise (formulas, regression): one local
+/// search from the start values to rounding error, no design, no seeds, profiles on the simulator.
+FitOptions smooth_fit_options();
 
 /// Everything wrong with the options, one sentence each; empty if they may be used.
 std::vector<std::string> problems(const FitOptions& options);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 the Tilth authors
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calibrate/fit_stages.hpp"
 
@@ -72,6 +74,41 @@ Eigen::MatrixXd residual_jacobian(const FitContext& context,
     jacobian(row++, static_cast<Eigen::Index>(j)) = coordinate_span(p) / *p.prior_sigma;
   }
   return jacobian;
+}
+
+double r_squared(const FitContext& context) {
+  const Target& first = context.targets[context.fitted.front()];
+  const auto n = static_cast<Eigen::Index>(context.fitted.size());
+  const Eigen::VectorXd sigmas = fitted_sigmas(context, context.optimum->num_seeds);
+  Eigen::VectorXd wanted(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Target& target = context.targets[context.fitted[static_cast<std::size_t>(i)]];
+    if (target.statistic != first.statistic || target.log_transform != first.log_transform) {
+      return not_known;
+    }
+    wanted[i] = transformed(target, target.value);
+  }
+  if (first.statistic.empty()) return not_known;
+  const Eigen::VectorXd weights = sigmas.cwiseAbs2().cwiseInverse();
+  const double mean = weights.dot(wanted) / weights.sum();
+  const double total = ((wanted.array() - mean) / sigmas.array()).square().sum();
+  const Eigen::VectorXd residuals = fit_residuals(
+      context, context.optimum->unit, context.optimum->mean, context.optimum->num_seeds);
+  return total > 0.0 ? 1.0 - residuals.head(n).squaredNorm() / total : not_known;
+}
+
+int degrees_of_freedom(const FitContext& context) {
+  const std::size_t num_observations = context.fitted.size() + num_priors(context);
+  return static_cast<int>(num_observations) - static_cast<int>(context.free.size());
+}
+
+double sigma_scale(const FitContext& context) {
+  if (!context.options.rescale_sigma) return 1.0;
+  const int freedom = degrees_of_freedom(context);
+  if (freedom < 1) return not_known;
+  // An exact fit would give parameters without any error, and 0 / 0 on the way.
+  const double least = std::numeric_limits<double>::min();
+  return std::sqrt(std::max(least, context.optimum->chi_square / freedom));
 }
 
 void record_cost(FitContext& context, double chi_square) {

@@ -33,7 +33,7 @@ double shift_in_errors(const FitContext& context, const Eigen::VectorXd& before)
   if (!context.uncertainty) return not_known;
   for (Eigen::Index j = 0; j < before.size(); ++j) {
     const double error = std::sqrt(context.uncertainty->covariance(j, j));
-    if (context.uncertainty->null_share[j] > max_null_share || error == 0.0) continue;
+    if (!context.uncertainty->is_fixed(j) || error == 0.0) continue;
     largest = std::max(largest, std::abs(context.optimum->unit[j] - before[j]) / error);
   }
   return largest;

@@ -38,7 +38,7 @@ Eigen::MatrixXd emulated_misfits(const FitContext& context,
 
 void find_conflicts(FitContext& context) {
   if (!context.optimum) return;
-  const std::vector<Emulator> emulators = make_emulators(context);
+  const std::vector<Emulator>& emulators = final_emulators(context);
   if (emulators.empty()) return;
   const Eigen::MatrixXd misfit = emulated_misfits(context, emulators);
   const Eigen::VectorXd alone = misfit.rowwise().minCoeff();

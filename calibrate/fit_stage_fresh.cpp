@@ -49,11 +49,9 @@ void predict_holdouts(FitContext& context, Prediction& prediction, Eigen::Vector
     context.summary.warnings.emplace_back("no run of the hold-outs completed");
     return;
   }
-  const Eigen::VectorXd steps =
-      secant_steps(context.parameters, context.options.log_step, context.options.linear_step);
   const Eigen::VectorXd own_sd = parameter_deviations(
-      context, paired_secants(*context.holdout, context.parameters, context.targets, optimum.unit,
-                              steps, std::span(seeds).first(1)));
+      context,
+      derivatives_at(context, *context.holdout, optimum.unit, std::span(seeds).first(1)));
   const Eigen::VectorXd variance = holdout_variance(context, samples, prediction.variance_of_one);
   for (std::size_t target = 0; target < context.targets.size(); ++target) {
     if (!context.targets[target].holdout) continue;

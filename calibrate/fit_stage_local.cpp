@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "calibrate/fit_stages.hpp"
-#include "calibrate/optimise_ceres.hpp"
 #include "calibrate/seed_average.hpp"
 
 namespace tilth {
@@ -15,43 +13,6 @@ namespace {
 
 constexpr double start_distance = 0.05;  // starts closer than this in the unit cube are one start
 constexpr double same_chi_square = 0.1;  // "found the best value"
-
-// Counts how often a parameter's secants failed, for one warning each.
-using FrozenCounts = std::map<std::size_t, int>;
-
-// chi-square as Ceres sees it: means over the search seeds, derivatives by paired secants.
-LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen) {
-  const auto d = static_cast<Eigen::Index>(context.free.size());
-  const auto seeds =
-      stage_seeds(context.options, SeedUse::search, context.options.num_search_seeds);
-  const Eigen::VectorXd steps =
-      secant_steps(context.parameters, context.options.log_step, context.options.linear_step);
-  LeastSquaresProblem problem;
-  problem.lower = Eigen::VectorXd::Zero(d);
-  problem.upper = Eigen::VectorXd::Ones(d);
-  problem.num_residuals = static_cast<int>(context.fitted.size() + num_priors(context));
-  problem.evaluate = [&context, &frozen, seeds, steps](const Eigen::VectorXd& unit,
-                                                       Eigen::VectorXd& residuals,
-                                                       Eigen::MatrixXd* jacobian) {
-    const auto num_seeds = static_cast<int>(seeds.size());
-    if (jacobian == nullptr) {
-      const auto mean =
-          average_over_seeds(context.search, context.parameters, context.targets, unit, seeds)
-              .front();
-      if (!mean) return false;
-      residuals = fit_residuals(context, unit, *mean, num_seeds);
-      return true;
-    }
-    const auto secants =
-        paired_secants(context.search, context.parameters, context.targets, unit, steps, seeds);
-    if (!secants) return false;
-    for (const std::size_t j : secants->frozen) ++frozen[j];
-    residuals = fit_residuals(context, unit, secants->base, num_seeds);
-    *jacobian = residual_jacobian(context, secants->jacobian, num_seeds);
-    return true;
-  };
-  return problem;
-}
 
 void warn_frozen(FitContext& context, const FrozenCounts& frozen) {
   for (const auto& [j, count] : frozen) {
@@ -81,12 +42,44 @@ LeastSquaresOptions local_options(FitContext& context) {
   LeastSquaresOptions options;
   options.max_iterations = context.options.max_iterations;
   options.absolute_tolerance = context.options.chi_square_tolerance;
-  options.parameter_tolerance = 1e-5;  // of the unit cube: far below any standard error
+  options.function_tolerance = context.options.function_tolerance;
+  options.parameter_tolerance = context.options.parameter_tolerance;
+  options.gradient_tolerance = context.options.gradient_tolerance;
   options.should_stop = [&context] { return is_blocked(context.ledger); };
   return options;
 }
 
 }  // namespace
+
+LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen) {
+  const auto d = static_cast<Eigen::Index>(context.free.size());
+  const auto seeds =
+      stage_seeds(context.options, SeedUse::search, context.options.num_search_seeds);
+  LeastSquaresProblem problem;
+  problem.lower = Eigen::VectorXd::Zero(d);
+  problem.upper = Eigen::VectorXd::Ones(d);
+  problem.num_residuals = static_cast<int>(context.fitted.size() + num_priors(context));
+  problem.evaluate = [&context, &frozen, seeds](const Eigen::VectorXd& unit,
+                                                Eigen::VectorXd& residuals,
+                                                Eigen::MatrixXd* jacobian) {
+    const auto num_seeds = static_cast<int>(seeds.size());
+    if (jacobian == nullptr) {
+      const auto mean =
+          average_over_seeds(context.search, context.parameters, context.targets, unit, seeds)
+              .front();
+      if (!mean) return false;
+      residuals = fit_residuals(context, unit, *mean, num_seeds);
+      return true;
+    }
+    const auto secants = derivatives_at(context, context.search, unit, seeds);
+    if (!secants) return false;
+    for (const std::size_t j : secants->frozen) ++frozen[j];
+    residuals = fit_residuals(context, unit, secants->base, num_seeds);
+    *jacobian = residual_jacobian(context, secants->jacobian, num_seeds);
+    return true;
+  };
+  return problem;
+}
 
 void refit_from(FitContext& context, const Eigen::VectorXd& unit_start) {
   FrozenCounts frozen;

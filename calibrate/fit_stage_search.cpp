@@ -128,6 +128,11 @@ std::vector<Emulator> make_emulators(const FitContext& context) {
   return emulators;
 }
 
+const std::vector<Emulator>& final_emulators(FitContext& context) {
+  if (!context.emulators) context.emulators = make_emulators(context);
+  return *context.emulators;
+}
+
 void run_search_rounds(FitContext& context) {
   if (!context.optimum || context.options.num_rounds == 0) return;
   begin_stage(context.ledger, "search");

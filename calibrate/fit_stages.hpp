@@ -5,7 +5,9 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,7 +15,9 @@
 #include "calibrate/evaluator.hpp"
 #include "calibrate/fit_options.hpp"
 #include "calibrate/fit_summary.hpp"
+#include "calibrate/optimise_ceres.hpp"
 #include "calibrate/parameters.hpp"
+#include "calibrate/profile.hpp"
 #include "calibrate/secants.hpp"
 #include "calibrate/targets.hpp"
 #include "calibrate/uncertainty.hpp"
@@ -60,13 +64,31 @@ struct FitContext {
   std::optional<Optimum> optimum{};
   std::optional<Secants> secants{};                ///< at the optimum
   std::optional<LinearUncertainty> uncertainty{};  ///< at the optimum
+  std::optional<std::vector<Emulator>> emulators{};  ///< of all search runs, see final_emulators()
+  std::vector<Profile> profiles{};                 ///< of the free parameters, or empty
+  double least_profile = not_known;                ///< the least chi-square of all profile points
 };
 
 /// num consecutive seeds of a stage, see FitOptions.
 enum class SeedUse { search = 0, confirm = 1000, fresh = 2000 };
 std::vector<std::uint64_t> stage_seeds(const FitOptions& options, SeedUse use, int num);
 
+// fit_derivatives.cpp
+/// Features and their derivatives at a point by the rule of the options, see Secants.
+std::optional<Secants> derivatives_at(const FitContext& context, Evaluator& evaluator,
+                                      const Eigen::VectorXd& unit,
+                                      std::span<const std::uint64_t> seeds);
+/// Singular values below this share of the largest drown in the error of the derivatives.
+double derivative_error_share(const FitOptions& options);
+
 // fit_residuals.cpp
+/// What sigma is multiplied by: 1, or sqrt(reduced chi-square of the optimum) with rescale_sigma.
+/// NaN if that is asked for without degrees of freedom.
+double sigma_scale(const FitContext& context);
+/// See FitSummary::r_squared. @pre optimum exists
+double r_squared(const FitContext& context);
+/// Observations and priors minus free parameters.
+int degrees_of_freedom(const FitContext& context);
 /// Variance of T of the model's mean over num_seeds packings, per target: v / num_seeds; once
 /// the bias is known that of the confirming mean, because the search packings it was measured on
 /// cancel in search + bias.
@@ -93,6 +115,9 @@ void find_conflicts(FitContext& context);
 // fit_stage_search.cpp
 /// One emulator per fitted target on the points completed so far; empty with too few of them.
 std::vector<Emulator> make_emulators(const FitContext& context);
+
+/// The same when the search is over, made once.
+const std::vector<Emulator>& final_emulators(FitContext& context);
 
 // fit_stage_design.cpp
 void run_design(FitContext& context);
@@ -124,6 +149,11 @@ void run_noise(FitContext& context);
 void run_search_rounds(FitContext& context);
 
 // fit_stage_local.cpp
+/// How often the derivative of a free parameter could not be had.
+using FrozenCounts = std::map<std::size_t, int>;
+/// chi-square as Ceres sees it: means over the search seeds, derivatives by the rule of the options.
+/// Context and counts must outlive it.
+LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen);
 void run_local_starts(FitContext& context);
 /// One local search, booked as a start; context.optimum becomes its end if that is better.
 void refit_from(FitContext& context, const Eigen::VectorXd& unit_start);
@@ -134,6 +164,18 @@ void run_bias(FitContext& context);
 // fit_stage_uncertainty.cpp
 /// Secants and covariance at the optimum; leaves them empty if its runs cannot be had.
 void update_uncertainty(FitContext& context);
+/// Standard errors in unit coordinates that the packings, and the sigma of targets and priors, would
+/// give alone; their squares add up to the variance. @pre uncertainty and optimum exist
+Eigen::VectorXd errors_from_packings(const FitContext& context);
+Eigen::VectorXd errors_from_targets(const FitContext& context);
+
+// fit_stage_profile.cpp
+/// Profiles of all free parameters, and the family of equivalent sets.
+void run_profiles(FitContext& context);
+/// Verdict and interval of free parameter j by its profile; nothing if there is none.
+void set_profile_verdict(const FitContext& context, std::size_t j, FittedParameter& fitted);
+
+// fit_stage_parameters.cpp
 /// Fills parameters, covariance, correlation and null directions of the summary.
 void report_parameters(FitContext& context);
 

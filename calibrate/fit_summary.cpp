@@ -52,12 +52,21 @@ std::string_view to_string(ParameterVerdict verdict) {
       return "fixed";
     case ParameterVerdict::identified:
       return "identified";
-    case ParameterVerdict::bound_limited:
-      return "bound_limited";
+    case ParameterVerdict::one_sided:
+      return "one_sided";
     case ParameterVerdict::flat:
       return "flat";
+    case ParameterVerdict::bound_limited:
+      return "bound_limited";
+    case ParameterVerdict::multimodal:
+      return "multimodal";
   }
   return "unknown";
+}
+
+std::string verdict_words(const FittedParameter& parameter) {
+  const std::string word(to_string(parameter.verdict));
+  return parameter.limited_by.empty() ? word : fmt::format("{}(by={})", word, parameter.limited_by);
 }
 
 bool FitSummary::is_usable() const {

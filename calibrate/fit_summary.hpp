@@ -37,13 +37,16 @@ enum class Reachability {
 };
 std::string_view to_string(Reachability reachability);
 
-/// What the covariance says about a parameter (a profile likelihood may say more).
+/// What is known about a parameter: by its profile likelihood (profile.hpp) where there is one, else
+/// by the linear interval.
 enum class ParameterVerdict {
-  unknown,        ///< no covariance
+  unknown,        ///< neither profile nor covariance
   fixed,          ///< was not estimated
-  identified,     ///< the 95 % interval lies inside the bounds
-  bound_limited,  ///< the value or the interval is cut off by a bound
-  flat,           ///< part of a null direction: the data do not fix it
+  identified,     ///< the 95 % level is crossed on both sides, inside the bounds
+  one_sided,      ///< on one side only: practical, better data may close the other
+  flat,           ///< on neither side: the data do not fix it within its bounds
+  bound_limited,  ///< crossed only because another parameter ran into its bound
+  multimodal,     ///< crossed, and come back below: separate regions fit equally well
 };
 std::string_view to_string(ParameterVerdict verdict);
 
@@ -57,14 +60,23 @@ struct FittedParameter {
   double lo95 = not_known;            ///< clipped at lower
   double hi95 = not_known;            ///< clipped at upper
   double standard_error = not_known;  ///< in the coordinate (relative if log_scale)
+  double standard_error_targets = not_known;   ///< its part due to the sigma of targets and priors
+  double standard_error_packings = not_known;  ///< its part due to packings; squares add up
+  double inflation = not_known;  ///< standard error / that with all other parameters held
+  double profile_lo95 = not_known;  ///< where the profile crosses the level; NaN where it does not
+  double profile_hi95 = not_known;
   double lower = not_known;
   double upper = not_known;
   bool log_scale = false;
   bool estimate = true;
   ParameterVerdict verdict = ParameterVerdict::unknown;
+  std::string limited_by;    ///< of a bound_limited one: the parameter that ran into its bound
   std::string expression;    ///< "1.5*other" where the value follows another parameter
   std::string no_error_bar;  ///< completes "no error bar because ..."; empty if there is one
 };
+
+/// The verdict with its reason: "bound_limited(by=friction)".
+std::string verdict_words(const FittedParameter& parameter);
 
 /// One target after the fit. "T" marks quantities of the transformed value (ln if log_transform).
 struct TargetResult {
@@ -94,6 +106,28 @@ struct TargetConflict {
   bool same_statistic = false;  ///< one observable under two conditions: the model's trend is wrong
 };
 inline constexpr double conflict_limit = 2.0;
+
+/// The profile of one free parameter: chi-square with this parameter held and the others fitted.
+struct ParameterProfile {
+  std::string parameter;
+  std::vector<double> values;                 ///< physical, ascending
+  std::vector<double> chi_square_difference;  ///< above the least of all profiles, >= 0
+  std::vector<Eigen::VectorXd> points;        ///< all parameters, physical, table order
+  std::vector<std::string> at_bound;          ///< another parameter held by its bound there; or ""
+};
+
+/// A parameter set that fits as well as the best one within the noise.
+struct EquivalentSet {
+  Eigen::VectorXd values;  ///< all parameters, physical, table order
+  double chi_square_difference = 0.0;
+};
+
+/// One curve of the data: how many points, and how many independent ones they are worth.
+struct CurveSampleSize {
+  std::string curve;
+  std::size_t num_points = 0;
+  double effective = not_known;  ///< see effective_sample_size()
+};
 
 /// One local search.
 struct StartResult {
@@ -128,9 +162,13 @@ struct FitSummary {
   double chi_square_start = not_known;  ///< start values, first search seed
   double chi_square = not_known;  ///< optimum, search seeds, priors included: what was minimised
   double chi_square_fresh = not_known;  ///< optimum, fresh seeds, fitted targets only
+  /// 1 - chi-square / weighted squares about the weighted mean target; NaN unless all fitted targets
+  /// are one statistic, since numbers of different units have no mean
+  double r_squared = not_known;
   std::size_t num_free = 0;
   std::size_t num_observations = 0;  ///< fitted targets + priors of free parameters
   std::size_t num_independent = 0;   ///< observation groups + priors of free parameters
+  int degrees_of_freedom = 0;        ///< num_observations - num_free
   int num_noise_seeds = 0;           ///< completed repeats behind seed_sd
   int num_fresh_seeds = 0;           ///< completed runs behind chi_square_fresh
   double holdout_rms = not_known;    ///< root mean square hold-out residual; NaN without hold-outs
@@ -142,10 +180,20 @@ struct FitSummary {
   std::vector<CostPoint> history;
 
   /// Of the free parameters, in the coordinate (ln v if log_scale), without null directions.
-  /// sigma is taken as absolute: nothing is rescaled by the reduced chi-square. Empty if unknown.
+  /// sigma is absolute, or multiplied by sigma_scale where that is asked for. Empty if unknown.
   Eigen::MatrixXd covariance;
   Eigen::MatrixXd correlation;               ///< NaN where a parameter has no error bar
   std::vector<std::string> null_directions;  ///< in words
+  std::vector<std::string> near_null_directions;  ///< in words: barely fixed
+  bool sigma_is_rescaled = false;
+  double sigma_scale = 1.0;      ///< sqrt(reduced chi-square) if rescaled
+  double interval_factor = 1.959963984540054;  ///< half-widths of 95 % intervals / standard error
+
+  std::vector<ParameterProfile> profiles;  ///< of the free parameters, table order; may be empty
+  std::string profile_source;              ///< on what they were drawn, in words
+  double profile_level = not_known;        ///< chi-square difference of the 95 % interval
+  std::vector<EquivalentSet> equivalence_family;  ///< the optimum first; empty without profiles
+  std::vector<CurveSampleSize> sample_sizes;      ///< empty unless curves were given
   Eigen::MatrixXd seed_covariance;           ///< T of the fitted targets, one simulation
 
   int num_bias_rounds = 0;

@@ -12,7 +12,6 @@ namespace tilth {
 namespace {
 
 constexpr double normal_95 = 1.959963984540054;
-constexpr double relative_limit = 1e-3;
 
 // "a", "a^0.5": one factor of a product; the sign is said by "x" or "/".
 std::string factor(const std::string& name, double exponent) {
@@ -28,8 +27,13 @@ std::string term(const std::string& name, double coefficient) {
 
 }  // namespace
 
+bool LinearUncertainty::is_fixed(Eigen::Index j) const {
+  return null_share[j] <= max_null_share && null_share[j] <= covariance(j, j);
+}
+
 LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
-                                     const Eigen::MatrixXd& residual_covariance) {
+                                     const Eigen::MatrixXd& residual_covariance,
+                                     double relative_limit) {
   const Eigen::Index q = jacobian.cols();
   // Rows of zeros make V square when there are fewer residuals than parameters.
   const Eigen::Index num_rows = std::max(jacobian.rows(), q);
@@ -45,14 +49,15 @@ LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
   const Eigen::MatrixXd gain = v * s.head(num_kept).cwiseInverse().asDiagonal() * u.transpose();
 
   LinearUncertainty result;
+  result.gain = gain;
   result.covariance = gain * residual_covariance * gain.transpose();
   result.null_space = svd.matrixV().rightCols(q - num_kept);
   result.null_share = result.null_space.rowwise().squaredNorm();
   return result;
 }
 
-std::string describe_null_direction(std::span<const Parameter> parameters,
-                                    const Eigen::VectorXd& direction) {
+std::string describe_direction(std::span<const Parameter> parameters,
+                               const Eigen::VectorXd& direction) {
   const std::vector<std::size_t> free = free_parameters(parameters);
   bool all_log = true;
   Eigen::VectorXd exponents = direction;
@@ -80,8 +85,12 @@ std::string describe_null_direction(std::span<const Parameter> parameters,
     words += all_log ? fmt::format(" {} {}", e > 0.0 ? "x" : "/", factor(name, e))
                      : fmt::format(" {} {}", e > 0.0 ? "+" : "-", term(name, e));
   }
-  return fmt::format("the data do not fix {}{}", words,
-                     all_log ? "" : " (each in units of its range between the bounds)");
+  return words + (all_log ? "" : " (each in units of its range between the bounds)");
+}
+
+std::string describe_null_direction(std::span<const Parameter> parameters,
+                                    const Eigen::VectorXd& direction) {
+  return "the data do not fix " + describe_direction(parameters, direction);
 }
 
 }  // namespace tilth

@@ -13,15 +13,19 @@
 
 namespace tilth {
 
+/// A parameter with more than this share in null directions gets no error bar.
+inline constexpr double max_null_share = 0.05;
+
 /// In the unit cube of the free parameters.
 struct LinearUncertainty {
   Eigen::MatrixXd covariance;  ///< (q, q), of the directions that are fixed by the data
   Eigen::MatrixXd null_space;  ///< (q, num_null), orthonormal columns: the other directions
   Eigen::VectorXd null_share;  ///< (q), sum of squares of a parameter's row of null_space
+  /// May parameter j have an error bar? Its share in null directions is small, and a walk of length 1
+  /// along them moves it by less than its standard error, which knows nothing of them.
+  bool is_fixed(Eigen::Index j) const;
+  Eigen::MatrixXd gain;        ///< (q, num_residuals), parameters moved by residuals: C = G W G'
 };
-
-/// A parameter with more than this share in null directions gets no error bar.
-inline constexpr double max_null_share = 0.05;
 
 /// Covariance of the least-squares estimate from the Jacobian at the optimum.
 ///
@@ -31,20 +35,25 @@ inline constexpr double max_null_share = 0.05;
 /// moves several features together. Nothing is rescaled by chi-square: sigma is absolute.
 /// A direction is null if
 ///   s_i < 1.96           its 95 % half-width is longer than the whole unit cube, or
-///   s_i < 1e-3 max(s)    it drowns in the O(h^2) error of secants with steps of 5 %.
+///   s_i < limit max(s)   it drowns in the error of the derivatives; 1e-3 suits the O(h^2) error of
+///                        secants with steps of 5 %.
 /// @shape jacobian (num_residuals, q), residuals divided by sigma_total, unit coordinates;
 ///        residual_covariance (num_residuals, num_residuals), unit diagonal
 /// @source Golub & Van Loan 2013, section 5.5; sandwich form Huber 1967
 LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
-                                     const Eigen::MatrixXd& residual_covariance);
+                                     const Eigen::MatrixXd& residual_covariance,
+                                     double relative_limit = 1e-3);
 
-/// A null direction in words: the combination of parameters that changes along it.
+/// A direction in words: the combination of parameters that changes along it.
 ///
-/// On log scales a direction (e_a, e_b) in ln a, ln b moves a^e_a b^e_b: "the data do not fix
-/// a x b" or "a / b", exponents relative to the largest. With linear parameters among them it is
+/// On log scales a direction (e_a, e_b) in ln a, ln b moves a^e_a b^e_b: "a x b" or "a / b", exponents relative to the largest. With linear parameters among them it is
 /// a sum in units of the ranges: "a + 0.5 b". Shares below a tenth of the largest are
 /// left out.
 /// @shape direction (num_free), unit coordinates
+std::string describe_direction(std::span<const Parameter> parameters,
+                               const Eigen::VectorXd& direction);
+
+/// "the data do not fix " and the direction.
 std::string describe_null_direction(std::span<const Parameter> parameters,
                                     const Eigen::VectorXd& direction);
 

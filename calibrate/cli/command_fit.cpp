@@ -15,6 +15,7 @@
 #include "calibrate/cli/fit_card.hpp"
 #include "calibrate/cli/fit_job.hpp"
 #include "calibrate/cli/fit_output.hpp"
+#include "calibrate/cli/profile_output.hpp"
 #include "calibrate/cli/progress_display.hpp"
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
@@ -79,6 +80,7 @@ void write_results(const FitJob& job, const FitSummary& summary, const FitCardCo
                                          : "")};
   write_file(folder / "fit.json", fit_card_json(job.soil, summary, card));
   write_file(folder / "fit_report.txt", fit_report_text(summary, report));
+  for (const std::string& sentence : write_profiles(job.soil, summary, folder)) log.warn(sentence);
   if (!summary.is_usable() || session.should_stop()) return;
   log.info("drawing curves at the fitted values");
   for (const std::string& sentence : write_curves_and_figures(
@@ -163,7 +165,7 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   for (const FittedParameter& p : summary.parameters)
     if (p.estimate)
       std::cout << fmt::format("{:<28} {:>12.5g}   95 % [{:.4g}, {:.4g}]   {}\n", p.name, p.value,
-                               p.lo95, p.hi95, to_string(p.verdict));
+                               p.lo95, p.hi95, verdict_words(p));
   std::cout << fmt::format("results: {} ({} s)\n", folder.string(),
                            static_cast<int>(session.seconds() + 0.5));
   return exit_code_of(summary);

@@ -48,8 +48,23 @@ struct TargetRow {
   bool holdout = false;
 };
 
+/// The profile of one parameter.
+struct ProfileFigure {
+  std::string title;
+  std::string x_label;
+  bool log_x = false;
+  double best = 0.0;         ///< fitted value
+  double low = 0.0, high = 0.0;  ///< linear 95 % interval, shaded; NaN = none
+  double level = 0.0;        ///< 95 % line
+  std::string level_label;
+  std::vector<double> values;
+  std::vector<double> chi_square_difference;
+  std::vector<std::string> at_bound;  ///< marked where not empty
+};
+
 /// Writes the SVG. Returns an empty text, or why there is no figure (gnuplot absent or failed).
 std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& svg);
+std::string draw_profile_figure(const ProfileFigure& figure, const std::filesystem::path& svg);
 std::string draw_targets(const std::string& title, const std::vector<TargetRow>& rows,
                          const std::filesystem::path& svg);
 

@@ -76,13 +76,49 @@ Json parameters_json(const SoilData& soil, const FitSummary& summary) {
     if (f.estimate && !p.tied_to) {
       entry["standard_error"] = number(f.standard_error);
       entry["standard_error_of"] = f.log_scale ? "ln(value)" : "value";
+      entry["standard_error_from_targets"] = number(f.standard_error_targets);
+      entry["standard_error_from_packings"] = number(f.standard_error_packings);
+      entry["profile_lo95"] = number(f.profile_lo95);
+      entry["profile_hi95"] = number(f.profile_hi95);
       entry["verdict"] = std::string(to_string(f.verdict));
+      if (!f.limited_by.empty()) entry["limited_by"] = f.limited_by;
       entry["start"] = number(f.start);
       entry["bounds"] = {number(f.lower), number(f.upper)};
       if (!f.no_error_bar.empty()) entry["no_error_bar_because"] = f.no_error_bar;
     }
     list.push_back(entry);
   }
+  return list;
+}
+
+/// All parameters of one point by name, ties applied.
+Json named_values_json(const SoilData& soil, const Eigen::VectorXd& point) {
+  const Eigen::VectorXd values = with_ties(soil.parameters, point);
+  Json object = Json::object();
+  for (std::size_t k = 0; k < soil.parameters.size(); ++k)
+    object[soil.parameters[k].id] = number(values[static_cast<Eigen::Index>(k)]);
+  return object;
+}
+
+Json profiles_json(const SoilData& soil, const FitSummary& s) {
+  Json curves = Json::array();
+  for (const ParameterProfile& p : s.profiles) {
+    Json points = Json::array();
+    for (std::size_t i = 0; i < p.values.size(); ++i)
+      points.push_back({{"value", number(p.values[i])},
+                        {"chi_square_difference", number(p.chi_square_difference[i])},
+                        {"at_bound", p.at_bound[i].empty() ? Json(nullptr) : Json(p.at_bound[i])},
+                        {"parameters", named_values_json(soil, p.points[i])}});
+    curves.push_back({{"name", p.parameter}, {"points", points}});
+  }
+  return {{"drawn_on", s.profile_source}, {"level", number(s.profile_level)}, {"curves", curves}};
+}
+
+Json family_json(const SoilData& soil, const FitSummary& s) {
+  Json list = Json::array();
+  for (const EquivalentSet& set : s.equivalence_family)
+    list.push_back({{"chi_square_difference", number(set.chi_square_difference)},
+                    {"parameters", named_values_json(soil, set.values)}});
   return list;
 }
 
@@ -215,6 +251,9 @@ std::string fit_card_json(const SoilData& soil, const FitSummary& s, const FitCa
   card["correlation"] = matrix_json(s.correlation);
   card["covariance"] = matrix_json(s.covariance);
   card["null_directions"] = s.null_directions;
+  card["near_null_directions"] = s.near_null_directions;
+  card["profiles"] = profiles_json(soil, s);
+  card["equivalence_family"] = family_json(soil, s);
   card["responses"] = responses_json(soil, s);
   card["fit_statistics"] = {{"chi_square_start", number(s.chi_square_start)},
                             {"chi_square", number(s.chi_square)},
@@ -222,7 +261,9 @@ std::string fit_card_json(const SoilData& soil, const FitSummary& s, const FitCa
                             {"num_free", s.num_free},
                             {"num_observations", s.num_observations},
                             {"num_independent", s.num_independent},
-                            {"sigma", "absolute"},
+                            {"sigma", s.sigma_is_rescaled
+                                          ? "rescaled by reduced chi-square"
+                                          : "absolute"},
                             {"num_starts", s.num_starts},
                             {"num_starts_at_best", s.num_starts_at_best}};
   card["validation"] = holdout_json(s, c.criterion);
@@ -252,6 +293,10 @@ std::string run_config_json(const SoilData& soil, const FitOptions& o, const Fit
                    {"max_iterations", o.max_iterations},
                    {"max_bias_rounds", o.max_bias_rounds},
                    {"chi_square_tolerance", o.chi_square_tolerance},
+                   {"function_tolerance", o.function_tolerance},
+                   {"parameter_tolerance", o.parameter_tolerance},
+                   {"gradient_tolerance", o.gradient_tolerance},
+                   {"rescale_sigma", o.rescale_sigma},
                    {"log_step", o.log_step},
                    {"linear_step", o.linear_step},
                    {"max_simulations", o.max_simulations},

@@ -27,6 +27,7 @@ void read_fit_object(JsonObjectReader& fit, FitOptions& o) {
   o.log_step = fit.number("log_step", o.log_step, positive);
   o.linear_step = fit.number("linear_step", o.linear_step, positive);
   o.holdout_limit = fit.number("holdout_limit", o.holdout_limit, positive);
+  o.rescale_sigma = fit.flag("rescale_sigma", o.rescale_sigma);
   o.max_simulations = static_cast<std::size_t>(
       fit.unsigned_integer("max_simulations", static_cast<std::uint64_t>(o.max_simulations)));
 }

@@ -182,7 +182,9 @@ TEST_CASE("Fit: a combination the data do not fix gets words instead of an error
   REQUIRE(summary.null_directions.size() == 1);
   REQUIRE_THAT(summary.null_directions[0],
                Contains("modulus_Pa / strength_Pa") || Contains("strength_Pa / modulus_Pa"));
-  REQUIRE(summary.parameters[0].verdict == ParameterVerdict::flat);
+  // ln modulus + ln strength is fixed: a modulus 8 % above its lower bound needs a strength above 1e5.
+  REQUIRE(summary.parameters[0].verdict == ParameterVerdict::bound_limited);
+  REQUIRE(summary.parameters[0].limited_by == "strength_Pa");
   REQUIRE_THAT(summary.parameters[0].no_error_bar, Contains("do not fix"));
   REQUIRE(std::isnan(summary.parameters[0].lo95));
   REQUIRE(summary.parameters[2].verdict == ParameterVerdict::identified);
@@ -215,7 +217,7 @@ TEST_CASE("Fit: a value cut off by its bound is flagged and its interval stays i
       fit(parameters, soil_targets(0.05, 0), simulator_of(soil_formula), nullptr, small_options());
   REQUIRE(summary.parameters[2].value == 0.4);
   REQUIRE(summary.parameters[2].hi95 == 0.4);
-  REQUIRE(summary.parameters[2].verdict == ParameterVerdict::bound_limited);
+  REQUIRE(summary.parameters[2].verdict == ParameterVerdict::one_sided);
   REQUIRE(summary.parameters[0].verdict == ParameterVerdict::identified);
 }
 
@@ -334,4 +336,46 @@ TEST_CASE("Fit: the quick preset recovers the parameters with fewer runs", "[cal
     // Three standard errors of about 6 %.
     REQUIRE_THAT(quick.values()[i], WithinRel(soil_truth()[i], 0.2));
   }
+}
+
+TEST_CASE("Fit: the parts of an error bar due to targets and to packings add up",
+          "[calibrate][fit]") {
+  const auto errors = [](double noise) {
+    return fit(soil_parameters(), soil_targets(0.05, 1), simulator_of(soil_formula, noise), nullptr,
+               small_options())
+        .parameters;
+  };
+  for (const double noise : {0.0, 0.2}) {
+    for (const FittedParameter& p : errors(noise)) {
+      INFO(p.name << ", noise " << noise);
+      // 1e-9: both parts go through the same gain.
+      CHECK_THAT(std::hypot(p.standard_error_targets, p.standard_error_packings),
+                 WithinRel(p.standard_error, 1e-9));
+      if (noise == 0.0) CHECK(p.standard_error_packings == 0.0);
+      // Packings scatter by 0.2 / sqrt(3) = 0.12, the targets by 0.05.
+      if (noise > 0.0) CHECK(p.standard_error_packings > 1.3 * p.standard_error_targets);
+    }
+  }
+}
+
+TEST_CASE("Fit: rescaled sigma does not care about the size of sigma", "[calibrate][fit]") {
+  const auto summary = [](double sigma, bool rescale) {
+    std::vector<Target> targets = soil_targets(0.05, 4);
+    for (Target& target : targets) target.sigma = sigma;
+    FitOptions options = smooth_fit_options();
+    options.rescale_sigma = rescale;
+    return fit(soil_parameters(), targets, simulator_of(soil_formula), nullptr, options);
+  };
+  const FitSummary one = summary(0.05, true);
+  const FitSummary other = summary(0.5, true);
+  for (std::size_t j = 0; j < 3; ++j) {
+    // 1e-5: both searches end within rounding of chi-square, 1e-7 of an error bar.
+    CHECK_THAT(other.parameters[j].standard_error,
+               WithinRel(one.parameters[j].standard_error, 1e-5));
+    CHECK_THAT(summary(0.05, false).parameters[j].standard_error * one.sigma_scale,
+               WithinRel(one.parameters[j].standard_error, 1e-5));
+    CHECK_THAT(std::log(one.parameters[j].hi95 / one.parameters[j].value),
+               WithinRel(3.182446305 * one.parameters[j].standard_error, 1e-8));  // t, 3 degrees
+  }
+  CHECK_THAT(one.profile_level, WithinRel(3.182446305 * 3.182446305, 1e-8));
 }

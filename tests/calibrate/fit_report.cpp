@@ -70,6 +70,27 @@ TEST_CASE("Report: a missing error bar comes with its reason", "[calibrate][repo
   REQUIRE_THAT(text, !Contains(" nan"));
 }
 
+TEST_CASE("Report: profiles, both parts of the errors, curves and rescaling are said",
+          "[calibrate][report]") {
+  FitSummary summary = fit(soil_parameters(), soil_targets(0.05, 1),
+                           simulator_of(soil_formula, 0.03), nullptr, small_options());
+  REQUIRE(summary.profiles.size() == 3);
+  summary.sample_sizes.push_back({"shear_10000Pa", 200, 12.25});
+  const std::string text = fit_report_text(summary, context);
+  REQUIRE_THAT(text, Contains("profiles: 95 % where chi-square rises by 3.841"));
+  REQUIRE_THAT(text, Contains("drawn on emulators of the search runs"));
+  REQUIRE_THAT(text, Contains("se from targets") && Contains("from packings"));
+  REQUIRE_THAT(text, Contains("effective sample size of shear_10000Pa: 12.2 of 200 points"));
+  REQUIRE_THAT(text, Contains("equivalence family: "));
+  summary.sigma_is_rescaled = true;
+  summary.sigma_scale = 1.5;
+  summary.degrees_of_freedom = 3;
+  const std::string rescaled = fit_report_text(summary, context);
+  REQUIRE_THAT(rescaled,
+               Contains("sigma: rescaled by reduced chi-square (standard errors times 1.5)"));
+  REQUIRE_THAT(rescaled, Contains("Student's t with 3 degrees of freedom"));
+}
+
 TEST_CASE("Report: a fit that did not run is one sentence", "[calibrate][report]") {
   REQUIRE(fit_report_text(FitSummary{}, context) ==
           "share of measured targets: 0 of 6\nnot_called: fit() was not called\n");

@@ -3,20 +3,28 @@ list(
   APPEND
   TILTH_TEST_SOURCES
   calibrate/csv_table.cpp
+  calibrate/effective_sample_size.cpp
   calibrate/emulator.cpp
   calibrate/evaluator.cpp
+  calibrate/extrapolated_derivatives.cpp
   calibrate/fault_injection.cpp
   calibrate/fit.cpp
   calibrate/fit_conflicts.cpp
   calibrate/fit_coverage.cpp
   calibrate/fit_failures.cpp
   calibrate/fit_report.cpp
+  calibrate/identifiability.cpp
+  calibrate/mgh.cpp
+  calibrate/mgh_problems.cpp
+  calibrate/nist.cpp
+  calibrate/nist_problems.cpp
   calibrate/optimise_ceres.cpp
   calibrate/optimise_nlopt.cpp
   calibrate/parallel.cpp
   calibrate/parameters.cpp
   calibrate/run_broker.cpp
   calibrate/run_store.cpp
+  calibrate/profile.cpp
   calibrate/secants.cpp
   calibrate/sensitivity_morris.cpp
   calibrate/sensitivity_noise.cpp
@@ -28,5 +36,6 @@ list(
   calibrate/soil_data_rules.cpp
   calibrate/soil_data_shipped.cpp
   calibrate/strict_json.cpp
+  calibrate/student_t.cpp
   calibrate/targets.cpp
   calibrate/uncertainty.cpp)

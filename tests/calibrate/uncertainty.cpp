@@ -70,3 +70,16 @@ TEST_CASE("Uncertainty: fewer residuals than parameters leave null directions, n
   REQUIRE(linear_uncertainty(Eigen::MatrixXd::Constant(1, 1, 2.0), Eigen::MatrixXd::Identity(1, 1))
               .null_space.cols() == 0);
 }
+
+TEST_CASE("Uncertainty: a small share of a null direction that outweighs the error bar forbids it",
+          "[calibrate][uncertainty]") {
+  // y = a - 100 b in the cube: along the null direction (1, 0.01) b moves by 0.01 only, but its
+  // error bar, which leaves that direction out, is 1 / 10000.
+  const Eigen::MatrixXd j = Eigen::RowVector2d(-100.0, 10000.0);
+  const LinearUncertainty found = linear_uncertainty(j, Eigen::MatrixXd::Identity(1, 1));
+  REQUIRE(found.null_share[1] < max_null_share);
+  REQUIRE_FALSE(found.is_fixed(0));
+  REQUIRE_FALSE(found.is_fixed(1));
+  const Eigen::MatrixXd apart = Eigen::Vector2d(0.0, 100.0).asDiagonal();
+  REQUIRE(linear_uncertainty(apart, Eigen::MatrixXd::Identity(2, 2)).is_fixed(1));
+}

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
 // The main job and `simulate` as a user runs them, on the smallest problem there is.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -53,13 +54,20 @@ TEST_CASE("Fit: the same command gives the same card on any threads and lanes", 
   // The card has what docs promise, and reads back as it was written.
   const Json json = read(one / "fit.json");
   for (const char* key : {"schema", "tool", "inputs", "seed", "status", "message", "soil",
-                          "provenance", "parameters", "material", "correlation", "responses",
+                          "provenance", "parameters", "material", "correlation", "profiles", "equivalence_family", "responses",
                           "fit_statistics", "validation", "scope", "warnings", "failures", "cost",
                           "reproduction"})
     CHECK(json.contains(key));
   CHECK(json["schema"] == "tilth.card/1");
   CHECK(json["inputs"].size() == 5);
   CHECK(json["responses"].size() == 3);
+  for (const Json& curve : json["profiles"]["curves"]) {
+    const std::string name = curve["name"];
+    const std::string table = read_text(one / "profiles" / (name + ".csv"));
+    CHECK(table.starts_with(name + ",chi_square_difference,at_bound,"));
+    CHECK(std::count(table.begin(), table.end(), '\n') ==
+          static_cast<std::ptrdiff_t>(curve["points"].size()) + 1);
+  }
   const FittedSet set = read_fit_card(one);
   CHECK(set.soil_id == "loamy_sand");
   CHECK(set.seed == 3);
