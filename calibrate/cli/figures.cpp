@@ -78,28 +78,28 @@ std::string draw_profile_figure(const ProfileFigure& figure, const std::filesyst
   if (first >= n) return "there is no profile to draw";
   first -= first > 0 ? 1 : 0;
   last += last + 1 < n ? 1 : 0;
-  std::string script = header(svg, 520) + data_block("profile", curve);
+  std::string script = gnuplot_header(svg, 520) + gnuplot_data("profile", curve);
   script += fmt::format(
       "set title {}\nset xlabel {}\nset ylabel 'chi-square above the best, the others refitted'\n"
       "set format x '%.3g'\n{}set xrange [{:.7g}:{:.7g}]\nset yrange [0:{:.7g}]\n"
       "set arrow from {:.7g}, graph 0 to {:.7g}, graph 1 nohead dt 3 lc rgb '#444444'\n",
-      quoted(figure.title), quoted(figure.x_label), figure.log_x ? "set logscale x\n" : "",
+      gnuplot_quoted(figure.title), gnuplot_quoted(figure.x_label), figure.log_x ? "set logscale x\n" : "",
       figure.values[first], figure.values[last], top, figure.best, figure.best);
   if (std::isfinite(figure.low) && std::isfinite(figure.high))
     script += fmt::format(
         "set object rectangle from {:.7g}, graph 0 to {:.7g}, graph 1 fc rgb '{}' fs transparent "
         "solid 0.10 noborder behind\n",
         std::max(figure.low, figure.values[first]), std::min(figure.high, figure.values[last]),
-        colors[2]);
+        figure_colors[2]);
   std::string plot = fmt::format(
       "plot {:.7g} with lines lw 2 dt 2 lc rgb '{}' title {}, $profile using 1:2 with linespoints "
       "lw 2 pt 7 ps 0.6 lc rgb '{}' title 'profile (shaded: linear 95 % interval)'",
-      figure.level, colors[1], quoted(figure.level_label), colors[0]);
+      figure.level, figure_colors[1], gnuplot_quoted(figure.level_label), figure_colors[0]);
   std::size_t k = 0;
   for (const auto& [name, rows] : marks) {
-    script += data_block(fmt::format("mark{}", k), rows);
+    script += gnuplot_data(fmt::format("mark{}", k), rows);
     plot += fmt::format(", $mark{} using 1:2 with points pt 9 ps 1.6 lc rgb '{}' title {}", k,
-                        colors[(k + 3) % std::size(colors)], quoted(name + " at its bound"));
+                        figure_colors[(k + 3) % std::size(figure_colors)], gnuplot_quoted(name + " at its bound"));
     ++k;
   }
   return run_gnuplot(script + plot + "\n", svg);

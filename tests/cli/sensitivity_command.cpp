@@ -70,7 +70,7 @@ TEST_CASE("Sensitivity command: all mistakes are listed at once, and nothing is 
   CHECK_FALSE(fs::exists(folder / "run"));
 }
 
-TEST_CASE("Sensitivity command: Morris writes tables and figures; --extend keeps the old runs",
+TEST_CASE("Sensitivity command: Morris writes tables and figures, and --extend keeps the old runs",
           "[cli][sensitivity]") {
   const TempFolder folder("sensitivity_morris");
   const std::string soil = one_test_soil(folder);

@@ -108,7 +108,7 @@ TEST_CASE("Session: bad limits, stores and folders are all named at once", "[cli
 TEST_CASE("Session: a file that may not grow ends with exit code 1 and a whole store", "[cli][session]") {
   const TempFolder folder("session_full");
   prepare(folder);
-  std::string command = "ulimit -f 200; exec " TILTH_PROGRAM;  // blocks of 512 or 1024 bytes
+  std::string command = "ulimit -f 64; exec " TILTH_PROGRAM;  // blocks of 512 or 1024 bytes
   for (const std::string& a : fit_into(folder, "full")) command += " '" + a + "'";
   const int status = std::system(("bash -c \"" + command + "\" 2> " + (folder / "words.txt")).c_str());
   CHECK(WEXITSTATUS(status) == exit_internal);
