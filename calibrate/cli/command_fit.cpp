@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "calibrate/cli/command_report.hpp"
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/fit_card.hpp"
 #include "calibrate/cli/fit_job.hpp"
@@ -159,6 +160,7 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   // 4. write
   write_results(job, summary, card, session, folder, log);
   write_file(folder / "timing.json", session.timing_json(command_line));
+  write_file(folder / "report.html", report_page(folder));
   say_end(session, log);
   log.info(summary.brief_report());
   std::cout << card.provenance_sentence << '\n';

@@ -12,8 +12,10 @@
 #include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_plan.hpp"
+#include "calibrate/cli/command_report.hpp"
 #include "calibrate/cli/command_sensitivity.hpp"
 #include "calibrate/cli/command_simulate.hpp"
+#include "calibrate/cli/command_validate.hpp"
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/tool_info.hpp"
@@ -48,6 +50,8 @@ int run_program(int argc, const char* const* argv) {
   WorkerOptions worker_options;
   CacheOptions cache_options;
   PlanOptions plan_options;
+  ReportOptions report_options;
+  ValidateOptions validate_options;
   SensitivityCommandOptions sensitivity_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
@@ -61,6 +65,10 @@ int run_program(int argc, const char* const* argv) {
   add_features_options(*features, features_options);
   CLI::App* plan = app.add_subcommand("plan", "runs and core-hours a fit will take; starts nothing");
   add_plan_options(*plan, plan_options);
+  CLI::App* validate = app.add_subcommand("validate", "a fitted set against data that took no part in it");
+  add_validate_options(*validate, validate_options);
+  CLI::App* report = app.add_subcommand("report", "report.html from the files of a run folder");
+  add_report_options(*report, report_options);
   CLI::App* cache = app.add_subcommand("cache", "list, show, remove and merge stored simulations");
   add_cache_options(*cache, cache_options);
   CLI::App* worker = app.add_subcommand("worker", "simulations on request, line by line");
@@ -84,6 +92,8 @@ int run_program(int argc, const char* const* argv) {
       return run_sensitivity_command(sensitivity_options, command_line);
     if (exporting->parsed()) return run_export(export_options);
     if (plan->parsed()) return run_plan(plan_options);
+    if (validate->parsed()) return run_validate(validate_options, command_line);
+    if (report->parsed()) return run_report(report_options);
     if (cache->parsed()) return run_cache(cache_options);
     if (worker->parsed()) return run_worker_command(worker_options);
     return run_fit(fit_options, command_line);

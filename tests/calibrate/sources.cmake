@@ -38,4 +38,5 @@ list(
   calibrate/strict_json.cpp
   calibrate/student_t.cpp
   calibrate/targets.cpp
+  calibrate/validation.cpp
   calibrate/uncertainty.cpp)

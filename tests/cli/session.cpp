@@ -155,3 +155,53 @@ TEST_CASE("Cache: lists, shows, merges and removes runs", "[cli][session]") {
   CHECK(RunStore(folder / "all.sqlite").keys().size() == keys.size() - 1);
   CHECK(run({"cache", "ls", folder / "none.sqlite"}).exit_code == exit_bad_input);
 }
+
+TEST_CASE("Report: one page, offline, first line the share of measured targets, every section and figure",
+          "[cli][report]") {
+  const TempFolder folder("report_page");
+  prepare(folder);
+  const ProgramRun fit = run_process(fit_into(folder, "run"), folder.path());
+  INFO(fit.errors);
+  const std::string page = read_text(folder / "run/report.html");
+  const std::size_t share = page.find("measured targets: 0 of 2 (0 %)");
+  REQUIRE(share != std::string::npos);
+  CHECK(share < page.find("<h1>"));
+  for (const char* part : {"PREVIEW", "bond_modulus_Pa", "Correlations", "id=\"holdout\"", "id=\"failures\"",
+                           "id=\"cost\"", "id=\"again\"", "SHA-256", "strain_at_peak"})
+    CHECK_THAT(page, Contains(part));
+  std::size_t num_figures = 0, num_images = 0;
+  for (const auto& entry : fs::directory_iterator(folder / "run/figures"))
+    num_figures += entry.path().extension() == ".svg" ? 1 : 0;
+  for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++num_images;
+  CHECK(num_images == num_figures);
+  CHECK_THAT(page, !Contains("src=\"http") && !Contains("href=\"http"));
+  // it can be made again from the machine files alone
+  fs::remove(folder / "run/report.html");
+  CHECK(run({"report", folder / "run"}).exit_code == exit_done);
+  CHECK(read_text(folder / "run/report.html") == page);
+  CHECK(run({"report", folder / "soil"}).exit_code == exit_bad_input);
+  CHECK(run({"report", folder / "nowhere"}).exit_code == exit_bad_input);
+}
+
+TEST_CASE("Validate: predicts new data by the pass mark of the fit, and refuses what does not fit together",
+          "[cli][validate]") {
+  const TempFolder folder("validate");
+  prepare(folder);
+  const ProgramRun fit = run_process(fit_into(folder, "run"), folder.path());
+  INFO(fit.errors);
+  const ProgramRun same = run_process({"validate", folder / "run", "--data", folder / "soil", "--seeds", "2",
+                                       "--out", folder / "same"}, folder.path());
+  INFO(same.errors);
+  CHECK(same.exit_code == exit_done);
+  CHECK_THAT(same.output, Contains("passed") && Contains("peak_stress_Pa") && Contains("strain_at_peak"));
+  CHECK_THAT(read_text(folder / "same/validation.json"), Contains("\"passed\": true"));
+
+  // a soil ten times as strong is another soil
+  std::string table = read_text(folder / "soil/measurements.csv");
+  table.replace(table.find("14160"), 5, "941600");
+  soil_test::write_text(fs::path(folder / "soil/measurements.csv"), table);
+  CHECK(run_process({"validate", folder / "run", "--data", folder / "soil", "--seeds", "2", "--out", folder / "other"},
+                    folder.path()).exit_code == exit_holdout_failed);
+  CHECK(run({"validate", folder / "soil", "--data", folder / "soil"}).exit_code == exit_bad_input);
+  CHECK(run({"validate", folder / "run", "--data", folder / "nothing"}).exit_code == exit_bad_input);
+}
