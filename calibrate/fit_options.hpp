@@ -41,7 +41,8 @@ struct FitOptions {
   int num_starts = 2;         ///< local searches from the best real points
   int max_iterations = 10;    ///< of one local search
   int max_bias_rounds = 2;    ///< bias, refit, bias, refit
-  /// A local search has converged when an iteration lowers chi-square by less than this. 0.01 is
+  /// A local search has converged when an iteration lowers chi-square by less than this times the
+  /// reduced chi-square (at least 1) of the best point before it. 0.01 is
   /// a tenth of a standard error at most.
   double chi_square_tolerance = 0.01;  ///< 0 = off
   double function_tolerance = 1e-6;   ///< ... or when it changes chi-square by less than this share

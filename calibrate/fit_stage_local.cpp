@@ -38,10 +38,19 @@ std::vector<Eigen::VectorXd> choose_starts(const FitContext& context) {
   return starts;
 }
 
+// A model that misses its data by many sigma has a chi-square landscape that is as much steeper: what is
+// small beside it is small beside what it means, so the tolerance grows with the reduced chi-square.
+double scaled_tolerance(const FitContext& context) {
+  const double freedom = static_cast<double>(context.summary.num_observations) -
+                         static_cast<double>(context.summary.num_free);
+  const double reduced = context.optimum ? context.optimum->chi_square / std::max(1.0, freedom) : 1.0;
+  return context.options.chi_square_tolerance * std::max(1.0, reduced);
+}
+
 LeastSquaresOptions local_options(FitContext& context) {
   LeastSquaresOptions options;
   options.max_iterations = context.options.max_iterations;
-  options.absolute_tolerance = context.options.chi_square_tolerance;
+  options.absolute_tolerance = scaled_tolerance(context);
   options.function_tolerance = context.options.function_tolerance;
   options.parameter_tolerance = context.options.parameter_tolerance;
   options.gradient_tolerance = context.options.gradient_tolerance;

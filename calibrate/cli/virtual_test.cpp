@@ -55,7 +55,7 @@ void apply_fidelity(DrainedTriaxialConfig& c, Fidelity fidelity) {
   switch (fidelity) {
     case Fidelity::preview: c.num_particles = 150, c.inertial_number = 4e-3; break;
     case Fidelity::search: c.num_particles = 200, c.inertial_number = 4e-3; break;
-    case Fidelity::confirm: c.num_particles = 1000, c.inertial_number = 1.5e-3; break;
+    case Fidelity::confirm: c.num_particles = 600, c.inertial_number = 2e-3; break;
   }
 }
 
