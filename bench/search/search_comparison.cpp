@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SPDX-FileCopyrightText: 2026 the Tilth authors
+// Simulations to the noise floor: fit() beside plain NLopt and plain Ceres, on twins of a stand-in
+// of the loamy-sand problem. Prints Markdown. From the repository's root:
+//
+//     build/release/bin/search_comparison          # 30 twins per data case
+//     build/release/bin/search_comparison 5        # fewer
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "bench/search/comparison.hpp"
+#include "bench/search/methods.hpp"
+#include "bench/search/stand_in.hpp"
+
+namespace {
+
+using namespace tilth;
+using namespace tilth::bench;
+
+struct Method {
+  std::string name;
+  bool is_plain = true;
+  std::function<Outcome(const Twin&)> run;
+};
+
+struct Row {
+  const Method* method = nullptr;
+  Counts floor;
+  Counts strict;
+  Counts whole;  // simulations until the method ended by itself (fit) or was ended
+  int num_returned_inside = 0;
+};
+
+std::vector<Method> methods_on(const StandIn& stand_in) {
+  std::vector<Method> methods{
+      {"`fit()`, defaults", false,
+       [&](const Twin& twin) { return run_fit(stand_in, twin, FitOptions{}); }},
+      {"`fit()`, quick preset", false,
+       [&](const Twin& twin) { return run_fit(stand_in, twin, quick_fit_options()); }}};
+  const std::vector<std::pair<std::string, NloptAlgorithm>> algorithms{
+      {"NLopt BOBYQA", NloptAlgorithm::bobyqa},
+      {"NLopt Sbplx", NloptAlgorithm::sbplx},
+      {"NLopt CRS2", NloptAlgorithm::crs2},
+      {"NLopt ISRES", NloptAlgorithm::isres}};
+  for (const int num_packings : {1, 3}) {
+    const std::string suffix =
+        fmt::format(", {} packing{}", num_packings, num_packings > 1 ? "s" : "");
+    for (const auto& [name, algorithm] : algorithms) {
+      methods.push_back(
+          {name + suffix, true, [&stand_in, algorithm, num_packings](const Twin& twin) {
+             return run_nlopt(stand_in, twin, algorithm, num_packings);
+           }});
+    }
+    for (const double step : {1e-6, 0.05}) {
+      methods.push_back({fmt::format("Ceres, step {:g}{}", step, suffix), true,
+                         [&stand_in, step, num_packings](const Twin& twin) {
+                           return run_ceres(stand_in, twin, step, num_packings);
+                         }});
+    }
+  }
+  return methods;
+}
+
+Row run_method(const Method& method, const std::vector<Twin>& twins) {
+  Row row{&method, {}, {}, {}, 0};
+  for (const Twin& twin : twins) {
+    const Outcome outcome = method.run(twin);
+    row.floor.push_back(outcome.to_floor);
+    row.strict.push_back(outcome.to_strict_floor);
+    row.whole.emplace_back(outcome.num_simulations);
+    if (outcome.excess_returned != Outcome::not_set && outcome.excess_returned <= noise_floor)
+      ++row.num_returned_inside;
+  }
+  fmt::print(stderr, "{}: median {:g}\n", method.name, median(row.floor, most_simulations));
+  return row;
+}
+
+std::string floor_cells(const Counts& counts) {
+  return fmt::format("{:g} | {:g} | {}/{}", median(counts, most_simulations),
+                     quantile(counts, 0.9, most_simulations), num_reached(counts), counts.size());
+}
+
+void print_table(const std::vector<Row>& rows) {
+  std::vector<Counts> plain;
+  std::vector<Counts> plain_strict;
+  for (const Row& row : rows) {
+    if (!row.method->is_plain) continue;
+    plain.push_back(row.floor);
+    plain_strict.push_back(row.strict);
+  }
+  fmt::print(
+      "| method | median | 90 % | reached | ratio to best plain (95 %) "
+      "| strict: median | 90 % | reached | ratio (95 %) |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const Row& row : rows) {
+    const Ratio ratio = ratio_to_best(row.floor, plain, most_simulations);
+    const Ratio strict = ratio_to_best(row.strict, plain_strict, most_simulations);
+    fmt::print("| {} | {} | {:.2f} ({:.2f}-{:.2f}) | {} | {:.2f} ({:.2f}-{:.2f}) |\n",
+               row.method->name, floor_cells(row.floor), ratio.value, ratio.lo95, ratio.hi95,
+               floor_cells(row.strict), strict.value, strict.lo95, strict.hi95);
+  }
+  for (const Row& row : rows) {
+    if (row.method->is_plain) continue;
+    fmt::print(
+        "\n{}: whole fit {:g} simulations (median), {:g} (90 %); the point it returned was "
+        "inside the floor in {} of {} twins.\n",
+        row.method->name, median(row.whole, most_simulations),
+        quantile(row.whole, 0.9, most_simulations), row.num_returned_inside, row.whole.size());
+  }
+}
+
+void print_case(const std::string& name, const StandIn& stand_in, const Eigen::VectorXd& noise,
+                int num_twins) {
+  std::vector<Twin> twins;
+  for (int i = 0; i < num_twins; ++i) {
+    twins.push_back(make_twin(stand_in, noise, static_cast<std::uint64_t>(i + 1)));
+  }
+  const std::vector<Method> methods = methods_on(stand_in);
+  std::vector<Row> rows;
+  for (const Method& method : methods) rows.push_back(run_method(method, twins));
+  fmt::print("\n{}\n\n", name);
+  print_table(rows);
+}
+
+void print_stand_in(const StandIn& stand_in) {
+  fmt::print(
+      "Stand-in: {} training runs.\n\n"
+      "| feature | packing sd | chaos sd | leave-one-out Q2 |\n| --- | --- | --- | --- |\n",
+      stand_in.num_training_runs);
+  for (std::size_t k = 0; k < stand_in.targets.size(); ++k) {
+    const auto index = static_cast<Eigen::Index>(k);
+    fmt::print("| {}{} | {:.3f} | {:.3f} | {:.3f} |\n",
+               stand_in.targets[k].log_transform ? "ln " : "", stand_in.targets[k].name,
+               stand_in.packing_sd[index], stand_in.chaos_sd[index],
+               stand_in.emulators[k].leave_one_out().q2);
+  }
+}
+
+}  // namespace
+
+int main(int num_arguments, char** arguments) {
+  const int num_twins = num_arguments > 1 ? std::atoi(arguments[1]) : 30;
+  if (num_twins < 1) {
+    fmt::print(stderr, "usage: search_comparison [number of twins]\n");
+    return 2;
+  }
+  try {
+    const StandIn stand_in =
+        read_stand_in(TILTH_SOURCE_DIR "/bench/reference/loamy_sand_preview.csv");
+    print_stand_in(stand_in);
+    // 5 % on stresses and moduli, 1.5 deg on the friction angle: docs/twins.md.
+    Eigen::VectorXd laboratory = Eigen::VectorXd::Constant(4, 0.05);
+    laboratory[0] = 1.5 * std::numbers::pi / 180.0;
+    Eigen::VectorXd literature(4);
+    for (std::size_t k = 0; k < 4; ++k) {
+      literature[static_cast<Eigen::Index>(k)] = stand_in.targets[k].sigma;
+    }
+    print_case("Laboratory data (5 %, 1.5 deg)", stand_in, laboratory, num_twins);
+    print_case("Data of the shipped soil (its own sigma)", stand_in, literature, num_twins);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}
