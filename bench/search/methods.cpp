@@ -44,11 +44,15 @@ class Judge {
   double excess(const Eigen::VectorXd& unit) const {
     return noise_free_chi_square(stand_in_, twin_, unit) - twin_.least;
   }
-  void see(const Eigen::VectorXd& best, std::size_t num_simulations) {
+  void see(const Eigen::VectorXd& best) {
     const double above = excess(best);
-    if (!outcome.to_floor && above <= noise_floor) outcome.to_floor = num_simulations;
-    if (!outcome.to_strict_floor && above <= strict_floor)
-      outcome.to_strict_floor = num_simulations;
+    if (!outcome.to_floor && above <= noise_floor) {
+      outcome.to_floor = outcome.num_simulations;
+      outcome.calls_to_floor = outcome.num_calls;
+    }
+    if (!outcome.to_strict_floor && above <= strict_floor) {
+      outcome.to_strict_floor = outcome.num_simulations;
+    }
   }
 
   Outcome outcome;
@@ -72,13 +76,14 @@ class PlainObjective {
     if (!is_new) return entry->second;
     if (judge_.outcome.num_simulations + static_cast<std::size_t>(num_packings_) > most_simulations)
       throw Ended{};
+    ++judge_.outcome.num_calls;
     const std::optional<Eigen::VectorXd> mean = mean_over_packings(unit);
     if (!mean) return std::nullopt;
     entry->second = residuals_of(stand_in_, twin_, *mean, num_packings_);
     const double value = entry->second->squaredNorm();
     if (value < best_) {
       best_ = value;
-      judge_.see(unit, judge_.outcome.num_simulations);
+      judge_.see(unit);
       if (judge_.outcome.to_strict_floor) throw Ended{};
     }
     return entry->second;
@@ -125,6 +130,7 @@ Outcome with_restarts(const Twin& twin, const PlainObjective& objective, const S
 // One simulation as the fit asked for it.
 struct Asked {
   std::string stage;
+  std::size_t call = 0;  // of the simulator, from 1
   std::uint64_t seed = 0;
   Eigen::VectorXd unit;
   std::optional<Eigen::VectorXd> transformed;  // empty if it failed
@@ -146,6 +152,7 @@ class Replay {
 
   void add(const Asked& run) {
     ++judge_.outcome.num_simulations;
+    judge_.outcome.num_calls = run.call;
     if (!run.transformed || run.seed >= last_search_seed()) return;
     const Key key(run.unit.begin(), run.unit.end());
     auto& seen = runs_[key];
@@ -185,7 +192,7 @@ class Replay {
   void see(const Eigen::VectorXd& unit, double value) {
     if (value >= best_) return;
     best_ = value;
-    judge_.see(unit, judge_.outcome.num_simulations);
+    judge_.see(unit);
   }
 
   const StandIn& stand_in_;
@@ -208,7 +215,7 @@ Eigen::VectorXd unit_of(const StandIn& stand_in, const Eigen::VectorXd& physical
 
 Asked asked(const StandIn& stand_in, const Twin& twin, const Eigen::VectorXd& physical,
             std::uint64_t seed, const Evaluation& run) {
-  Asked result{"", seed, unit_of(stand_in, physical), std::nullopt};
+  Asked result{"", 0, seed, unit_of(stand_in, physical), std::nullopt};
   if (run.status != EvaluationStatus::completed) return result;
   result.transformed.emplace(run.features.size());
   for (Eigen::Index k = 0; k < run.features.size(); ++k) {
@@ -216,6 +223,20 @@ Asked asked(const StandIn& stand_in, const Twin& twin, const Eigen::VectorXd& ph
         transformed(twin.targets[static_cast<std::size_t>(k)], run.features[k]);
   }
   return result;
+}
+
+// Forward difference; backward where the bound or a failed run is in the way.
+std::optional<Eigen::VectorXd> one_sided_slope(PlainObjective& objective,
+                                               const Eigen::VectorXd& unit,
+                                               const Eigen::VectorXd& base, Eigen::Index j,
+                                               double step) {
+  for (const double way : {step, -step}) {
+    Eigen::VectorXd moved = unit;
+    moved[j] += way;
+    if (moved[j] < 0.0 || moved[j] > 1.0) continue;
+    if (const auto there = objective.residuals(moved)) return (*there - base) / way;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -247,11 +268,9 @@ Outcome run_ceres(const StandIn& stand_in, const Twin& twin, double step, int nu
     if (!base) return false;
     residuals = *base;
     for (Eigen::Index j = 0; jacobian != nullptr && j < unit.size(); ++j) {
-      Eigen::VectorXd moved = unit;
-      moved[j] += unit[j] + step <= 1.0 ? step : -step;
-      const auto there = objective.residuals(moved);
-      if (!there) return false;
-      jacobian->col(j) = (*there - *base) / (moved[j] - unit[j]);
+      const auto slope = one_sided_slope(objective, unit, *base, j, step);
+      if (!slope) return false;
+      jacobian->col(j) = *slope;
     }
     return true;
   };
@@ -268,6 +287,7 @@ Outcome run_fit(const StandIn& stand_in, const Twin& twin, FitOptions options) {
   }
   std::vector<Asked> runs;
   std::size_t num_labelled = 0;
+  std::size_t num_calls = 0;
   options.seed = first_packing(twin);
   options.progress = [&](const Progress& progress) {
     for (; num_labelled < runs.size(); ++num_labelled) runs[num_labelled].stage = progress.stage;
@@ -276,9 +296,11 @@ Outcome run_fit(const StandIn& stand_in, const Twin& twin, FitOptions options) {
   const Simulator recorded = [&](const Eigen::MatrixXd& points,
                                  std::span<const std::uint64_t> seeds) {
     const std::vector<Evaluation> results = inner(points, seeds);
+    ++num_calls;
     for (std::size_t i = 0; i < results.size(); ++i) {
-      runs.push_back(
-          asked(stand_in, twin, points.col(static_cast<Eigen::Index>(i)), seeds[i], results[i]));
+      const Eigen::VectorXd point = points.col(static_cast<Eigen::Index>(i));
+      runs.push_back(asked(stand_in, twin, point, seeds[i], results[i]));
+      runs.back().call = num_calls;
     }
     return results;
   };

@@ -25,6 +25,9 @@ inline constexpr std::size_t most_simulations = 2000;
 struct Outcome {
   std::optional<std::size_t> to_floor;
   std::optional<std::size_t> to_strict_floor;
+  /// The same in calls: what is asked for at once, and so can run side by side, is one call.
+  std::optional<std::size_t> calls_to_floor;
+  std::size_t num_calls = 0;
   std::size_t num_simulations = 0;   ///< when the method ended, or was ended
   double excess_returned = not_set;  ///< of the point that fit() returned, above the least
   static constexpr double not_set = -1.0;

@@ -33,6 +33,7 @@ struct Row {
   const Method* method = nullptr;
   Counts floor;
   Counts strict;
+  Counts calls;  // to the floor
   Counts whole;  // simulations until the method ended by itself (fit) or was ended
   int num_returned_inside = 0;
 };
@@ -68,11 +69,12 @@ std::vector<Method> methods_on(const StandIn& stand_in) {
 }
 
 Row run_method(const Method& method, const std::vector<Twin>& twins) {
-  Row row{&method, {}, {}, {}, 0};
+  Row row{&method, {}, {}, {}, {}, 0};
   for (const Twin& twin : twins) {
     const Outcome outcome = method.run(twin);
     row.floor.push_back(outcome.to_floor);
     row.strict.push_back(outcome.to_strict_floor);
+    row.calls.push_back(outcome.calls_to_floor);
     row.whole.emplace_back(outcome.num_simulations);
     if (outcome.excess_returned != Outcome::not_set && outcome.excess_returned <= noise_floor)
       ++row.num_returned_inside;
@@ -95,15 +97,16 @@ void print_table(const std::vector<Row>& rows) {
     plain_strict.push_back(row.strict);
   }
   fmt::print(
-      "| method | median | 90 % | reached | ratio to best plain (95 %) "
+      "| method | median | 90 % | reached | ratio to best plain (95 %) | calls "
       "| strict: median | 90 % | reached | ratio (95 %) |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   for (const Row& row : rows) {
     const Ratio ratio = ratio_to_best(row.floor, plain, most_simulations);
     const Ratio strict = ratio_to_best(row.strict, plain_strict, most_simulations);
-    fmt::print("| {} | {} | {:.2f} ({:.2f}-{:.2f}) | {} | {:.2f} ({:.2f}-{:.2f}) |\n",
+    fmt::print("| {} | {} | {:.2f} ({:.2f}-{:.2f}) | {:g} | {} | {:.2f} ({:.2f}-{:.2f}) |\n",
                row.method->name, floor_cells(row.floor), ratio.value, ratio.lo95, ratio.hi95,
-               floor_cells(row.strict), strict.value, strict.lo95, strict.hi95);
+               median(row.calls, most_simulations), floor_cells(row.strict), strict.value,
+               strict.lo95, strict.hi95);
   }
   for (const Row& row : rows) {
     if (row.method->is_plain) continue;

@@ -25,6 +25,7 @@ list(
   calibrate/run_broker.cpp
   calibrate/run_store.cpp
   calibrate/profile.cpp
+  calibrate/search_economy.cpp
   calibrate/secants.cpp
   calibrate/sensitivity_morris.cpp
   calibrate/sensitivity_noise.cpp
