@@ -13,9 +13,9 @@
 
 namespace tilth::bench {
 
-/// The floor: noise-free chi-square above its least. Data with errors put the truth itself
-/// chi^2 of num_free degrees above the least, num_free on average: a set within it is as good as
-/// the truth.
+/// The floor: noise-free chi-square above its least. Errors of the data and of one simulation put
+/// the truth itself chi^2 of num_free degrees above the least, num_free on average: a set within it
+/// cannot be told from the truth.
 inline constexpr double noise_floor = 3.0;
 inline constexpr double strict_floor = 1.0;  ///< one standard error of one parameter
 inline constexpr std::size_t most_simulations = 2000;
