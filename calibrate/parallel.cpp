@@ -5,6 +5,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <thread>
+
 namespace tilth {
 
 void parallel_for_each_index(std::size_t n, int num_threads,
@@ -16,6 +19,11 @@ void parallel_for_each_index(std::size_t n, int num_threads,
   // One index per task: a body is a whole simulation, so balance matters and overhead does not.
   tbb::task_arena arena(num_threads);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
+}
+
+int threads_or_all(int num_threads) {
+  return num_threads > 0 ? num_threads
+                         : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
 }  // namespace tilth

@@ -17,4 +17,7 @@ namespace tilth {
 void parallel_for_each_index(std::size_t n, int num_threads,
                              const std::function<void(std::size_t)>& body);
 
+/// The number itself, or for 0 what the machine has, at least 1.
+int threads_or_all(int num_threads);
+
 }  // namespace tilth

@@ -30,6 +30,7 @@ forbid("dem_core/(pack|[a-z0-9_]+_kernel)\\.hpp" IN ${all} EXCEPT "^dem_core/[a-
 forbid("ceres/" IN ${all} EXCEPT "^calibrate/optimise_ceres\\.cpp$")
 forbid("nlopt" IN ${all} EXCEPT "^calibrate/optimise_nlopt\\.cpp$")
 forbid("(sqlite3|SQLiteCpp)" IN ${all} EXCEPT "^calibrate/run_store\\.cpp$")
-forbid("nlohmann/" IN ${all} EXCEPT "_json\\.cpp$")
+forbid("nlohmann/" IN ${all} EXCEPT "_json\\.[ch]pp$")
+forbid("calibrate/cli/card_parts_json\\.hpp" IN ${all} EXCEPT "_json\\.cpp$")
 forbid("(tbb|oneapi)/" IN ${all} EXCEPT "^calibrate/parallel\\.cpp$")
 forbid("((CLI|spdlog)/|iostream)" IN ${all} EXCEPT "^calibrate/cli/")

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <thread>
 
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/figures.hpp"
@@ -104,10 +103,7 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   const std::filesystem::path folder = make_run_folder(o.out, o.experiment);
 
   PackingStore packings(default_packing_folder());
-  const int threads = o.num_threads > 0
-                          ? o.num_threads
-                          : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const RunContext context{packings, threads, 0, &interrupt_flag()};
+  const RunContext context{packings, threads_or_all(o.num_threads), 0, &interrupt_flag()};
   std::vector<std::uint64_t> seeds;
   for (int k = 0; k < o.num_seeds; ++k) seeds.push_back(o.seed + static_cast<std::uint64_t>(k));
   std::vector<TestRun> runs;

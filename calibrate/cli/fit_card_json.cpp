@@ -5,11 +5,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "calibrate/cli/file_hash.hpp"
-#include "calibrate/cli/tool_info.hpp"
+#include "calibrate/cli/card_parts_json.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/soil_fit.hpp"
 #include "calibrate/strict_json.hpp"
@@ -18,24 +16,6 @@ namespace tilth {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// NaN is not JSON: null where a number is not known.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json tool_json() {
-  return {{"name", "tilth"},
-          {"version", tool_version},
-          {"commit", tool_commit},
-          {"compiler", tool_compiler},
-          {"flags", tool_flags}};
-}
-
-Json inputs_json(const std::vector<std::filesystem::path>& files) {
-  Json list = Json::array();
-  for (const auto& file : files)
-    list.push_back({{"path", file.filename().string()}, {"sha256", sha256_of_file(file)}});
-  return list;
-}
 
 Json fields_json(const std::vector<Field>& fields) {
   Json object = Json::object();
@@ -61,29 +41,29 @@ Json parameters_json(const SoilData& soil, const FitSummary& summary) {
     const FittedParameter& f = summary.parameters[k];
     const SoilParameter& p = soil.parameters[k];
     Json entry = {{"name", f.name},
-                  {"value", number(values[static_cast<Eigen::Index>(k)])},
-                  {"lo95", number(f.lo95)},
-                  {"hi95", number(f.hi95)},
+                  {"value", json_number(values[static_cast<Eigen::Index>(k)])},
+                  {"lo95", json_number(f.lo95)},
+                  {"hi95", json_number(f.hi95)},
                   {"role", role_of(p, f)}};
     if (p.tied_to) {
       entry["tied_to"] = fmt::format("{}*{}", p.tied_to->factor, p.tied_to->parameter_id);
       for (std::size_t m = 0; m < summary.parameters.size(); ++m)
         if (summary.parameters[m].name == p.tied_to->parameter_id) {
-          entry["lo95"] = number(p.tied_to->factor * summary.parameters[m].lo95);
-          entry["hi95"] = number(p.tied_to->factor * summary.parameters[m].hi95);
+          entry["lo95"] = json_number(p.tied_to->factor * summary.parameters[m].lo95);
+          entry["hi95"] = json_number(p.tied_to->factor * summary.parameters[m].hi95);
         }
     }
     if (f.estimate && !p.tied_to) {
-      entry["standard_error"] = number(f.standard_error);
+      entry["standard_error"] = json_number(f.standard_error);
       entry["standard_error_of"] = f.log_scale ? "ln(value)" : "value";
-      entry["standard_error_from_targets"] = number(f.standard_error_targets);
-      entry["standard_error_from_packings"] = number(f.standard_error_packings);
-      entry["profile_lo95"] = number(f.profile_lo95);
-      entry["profile_hi95"] = number(f.profile_hi95);
+      entry["standard_error_from_targets"] = json_number(f.standard_error_targets);
+      entry["standard_error_from_packings"] = json_number(f.standard_error_packings);
+      entry["profile_lo95"] = json_number(f.profile_lo95);
+      entry["profile_hi95"] = json_number(f.profile_hi95);
       entry["verdict"] = std::string(to_string(f.verdict));
       if (!f.limited_by.empty()) entry["limited_by"] = f.limited_by;
-      entry["start"] = number(f.start);
-      entry["bounds"] = {number(f.lower), number(f.upper)};
+      entry["start"] = json_number(f.start);
+      entry["bounds"] = {json_number(f.lower), json_number(f.upper)};
       if (!f.no_error_bar.empty()) entry["no_error_bar_because"] = f.no_error_bar;
     }
     list.push_back(entry);
@@ -96,7 +76,7 @@ Json named_values_json(const SoilData& soil, const Eigen::VectorXd& point) {
   const Eigen::VectorXd values = with_ties(soil.parameters, point);
   Json object = Json::object();
   for (std::size_t k = 0; k < soil.parameters.size(); ++k)
-    object[soil.parameters[k].id] = number(values[static_cast<Eigen::Index>(k)]);
+    object[soil.parameters[k].id] = json_number(values[static_cast<Eigen::Index>(k)]);
   return object;
 }
 
@@ -105,19 +85,19 @@ Json profiles_json(const SoilData& soil, const FitSummary& s) {
   for (const ParameterProfile& p : s.profiles) {
     Json points = Json::array();
     for (std::size_t i = 0; i < p.values.size(); ++i)
-      points.push_back({{"value", number(p.values[i])},
-                        {"chi_square_difference", number(p.chi_square_difference[i])},
+      points.push_back({{"value", json_number(p.values[i])},
+                        {"chi_square_difference", json_number(p.chi_square_difference[i])},
                         {"at_bound", p.at_bound[i].empty() ? Json(nullptr) : Json(p.at_bound[i])},
                         {"parameters", named_values_json(soil, p.points[i])}});
     curves.push_back({{"name", p.parameter}, {"points", points}});
   }
-  return {{"drawn_on", s.profile_source}, {"level", number(s.profile_level)}, {"curves", curves}};
+  return {{"drawn_on", s.profile_source}, {"level", json_number(s.profile_level)}, {"curves", curves}};
 }
 
 Json family_json(const SoilData& soil, const FitSummary& s) {
   Json list = Json::array();
   for (const EquivalentSet& set : s.equivalence_family)
-    list.push_back({{"chi_square_difference", number(set.chi_square_difference)},
+    list.push_back({{"chi_square_difference", json_number(set.chi_square_difference)},
                     {"parameters", named_values_json(soil, set.values)}});
   return list;
 }
@@ -125,22 +105,22 @@ Json family_json(const SoilData& soil, const FitSummary& s) {
 Json target_json(const TargetResult& t, const SoilTarget* source, bool holdout, int num_seeds) {
   Json entry = {{"name", t.name},
                 {"holdout", holdout},
-                {"target", number(t.value)},
-                {"sigma", number(t.sigma)},
+                {"target", json_number(t.value)},
+                {"sigma", json_number(t.sigma)},
                 {"sigma_of", t.log_transform ? "ln(value)" : "value"},
-                {"sim", number(t.simulated)},
-                {"sim_sd", number(t.seed_sd)},
+                {"sim", json_number(t.simulated)},
+                {"sim_sd", json_number(t.seed_sd)},
                 {"n_seeds", num_seeds},
-                {"sigma_total", number(t.sigma_total)},
-                {"residual", number(t.residual)},
+                {"sigma_total", json_number(t.sigma_total)},
+                {"residual", json_number(t.residual)},
                 {"reachability", std::string(to_string(t.reachability))},
-                {"reach_gap", number(t.reach_gap)},
+                {"reach_gap", json_number(t.reach_gap)},
                 {"conflicts_with", t.conflicts_with},
-                {"joint_misfit", number(t.joint_misfit)},
-                {"bias", number(t.bias)},
-                {"bias_error", number(t.bias_error)},
+                {"joint_misfit", json_number(t.joint_misfit)},
+                {"bias", json_number(t.bias)},
+                {"bias_error", json_number(t.bias_error)},
                 {"provenance", std::string(to_string(t.provenance))}};
-  if (holdout) entry["parameter_sd"] = number(t.parameter_sd);
+  if (holdout) entry["parameter_sd"] = json_number(t.parameter_sd);
   if (source) {
     entry["source"] = source->origin.source;
     entry["locator"] = source->origin.locator;
@@ -167,7 +147,7 @@ Json matrix_json(const Eigen::MatrixXd& m) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(number(m(i, j)));
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(json_number(m(i, j)));
     rows.push_back(row);
   }
   return rows;
@@ -204,7 +184,7 @@ Json failures_json(const FitSummary& summary) {
   for (const FailedRun& f : summary.failures) {
     Json values = Json::object();
     for (std::size_t k = 0; k < summary.parameters.size(); ++k)
-      values[summary.parameters[k].name] = number(f.parameters[static_cast<Eigen::Index>(k)]);
+      values[summary.parameters[k].name] = json_number(f.parameters[static_cast<Eigen::Index>(k)]);
     list.push_back({{"stage", f.stage},
                     {"simulator", f.simulator},
                     {"seed", f.seed},
@@ -224,8 +204,8 @@ Json stages_json(const FitSummary& summary) {
 Json holdout_json(const FitSummary& s, const std::string& criterion) {
   return {{"criterion", criterion},
           {"prestated", true},
-          {"rms_residual", number(s.holdout_rms)},
-          {"limit", number(s.holdout_limit)},
+          {"rms_residual", json_number(s.holdout_rms)},
+          {"limit", json_number(s.holdout_limit)},
           {"passed", s.holdouts.empty() ? Json(nullptr) : Json(!s.holdout_failed())}};
 }
 
@@ -255,9 +235,9 @@ std::string fit_card_json(const SoilData& soil, const FitSummary& s, const FitCa
   card["profiles"] = profiles_json(soil, s);
   card["equivalence_family"] = family_json(soil, s);
   card["responses"] = responses_json(soil, s);
-  card["fit_statistics"] = {{"chi_square_start", number(s.chi_square_start)},
-                            {"chi_square", number(s.chi_square)},
-                            {"chi_square_fresh_seeds", number(s.chi_square_fresh)},
+  card["fit_statistics"] = {{"chi_square_start", json_number(s.chi_square_start)},
+                            {"chi_square", json_number(s.chi_square)},
+                            {"chi_square_fresh_seeds", json_number(s.chi_square_fresh)},
                             {"num_free", s.num_free},
                             {"num_observations", s.num_observations},
                             {"num_independent", s.num_independent},
@@ -382,14 +362,14 @@ std::string simulation_json(const TestConfig& config, const SoilMaterial& materi
   for (std::size_t k = 0; k < results.size(); ++k) {
     const ExperimentResult& r = results[k];
     Json features = Json::object();
-    for (const Feature& f : r.features) features[f.name] = number(f.value);
+    for (const Feature& f : r.features) features[f.name] = json_number(f.value);
     out["runs"].push_back({{"packing_seed", seeds[k]},
                            {"status", name_of(r.status)},
                            {"message", r.message},
                            {"features", features},
                            {"dt_s", r.dt_s},
                            {"num_steps", r.num_steps},
-                           {"inertial_number", number(r.inertial_number)}});
+                           {"inertial_number", json_number(r.inertial_number)}});
   }
   out["reproduction"] = {{"command", command}};
   return out.dump(2) + "\n";

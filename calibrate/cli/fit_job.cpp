@@ -42,8 +42,7 @@ FitJob read_job(const JobOptions& o) {
   job.options = o.quick ? quick_fit_options() : FitOptions{};
   job.options.seed = o.seed;
   job.options.force = o.force;
-  for (const char* name : {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv"})
-    job.inputs.push_back(folder / name);
+  job.inputs = soil_tables(folder);
   if (!o.config.empty()) {
     apply_run_config(o.config, job.soil, job.options);
     job.inputs.emplace_back(o.config);

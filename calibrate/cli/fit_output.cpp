@@ -16,15 +16,6 @@
 namespace tilth {
 namespace {
 
-const char* name_of(Fidelity fidelity) {
-  switch (fidelity) {
-    case Fidelity::preview: return "preview";
-    case Fidelity::search: return "search";
-    case Fidelity::confirm: return "confirm";
-  }
-  return "";
-}
-
 /// One rerun at the fitted values.
 struct Rerun {
   PlannedTest test;

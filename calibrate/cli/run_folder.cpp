@@ -2,8 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrate/cli/run_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -32,13 +35,27 @@ void back_up(const fs::path& folder) {
 
 }  // namespace
 
+FolderLock::FolderLock(const fs::path& folder)
+    : fd_(::open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+  if (fd_ >= 0 && ::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+  if (fd_ >= 0) ::close(fd_);
+  throw ConfigError({fmt::format("--out {}: another calibrate is working in this folder; name another "
+                                 "one, or share its runs with --store {}",
+                                 folder.string(), (folder / "evaluations.sqlite").string())});
+}
+
+FolderLock::~FolderLock() { ::close(fd_); }
+
 fs::path make_run_folder(const fs::path& wanted, const std::string& stem) {
   fs::path folder = wanted.empty() ? first_free(stem) : wanted;
   if (!folder.has_filename()) folder = folder.parent_path();
   try {
     if (fs::exists(folder) && !fs::is_directory(folder))
       throw ConfigError({fmt::format("--out {}: is a file, not a folder", folder.string())});
-    if (fs::exists(folder) && !fs::is_empty(folder)) back_up(folder);
+    if (fs::exists(folder) && !fs::is_empty(folder)) {
+      if (fs::exists(folder / ".lock")) const FolderLock nobody_is_in(folder);
+      back_up(folder);
+    }
     fs::create_directories(folder);
     const fs::path probe = folder / ".writable";
     std::ofstream(probe) << "x";

@@ -8,10 +8,24 @@
 
 namespace tilth {
 
+/// Holds a run folder for one program: an advisory lock on its file ".lock", given up with the object
+/// or the process, however that ends.
+class FolderLock {
+ public:
+  /// @throws ConfigError if another program works in the folder
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
 /// Makes the folder and checks that it can be written. An existing folder that is not empty is
 /// moved to "<folder>.backup-<date>-<time>" first. An empty name becomes runs/<stem>-<n> with the
 /// first free n.
-/// @throws ConfigError if it cannot be made or written
+/// @throws ConfigError if it cannot be made or written, or if another program works in it
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, const std::string& stem);
 
 /// Writes beside and renames. Folders on the way are made.

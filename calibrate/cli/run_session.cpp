@@ -2,46 +2,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "calibrate/cli/run_session.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/config_difference.hpp"
 #include "calibrate/cli/interrupt.hpp"
-#include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/solver_version.hpp"
 #include "calibrate/cli/walltime.hpp"
 #include "calibrate/config_error.hpp"
+#include "calibrate/parallel.hpp"
 
 namespace tilth {
 namespace fs = std::filesystem;
 namespace {
 
-int threads_of(const SessionOptions& o) {
-  return o.num_threads > 0 ? o.num_threads
-                           : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
-
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-int locked(const fs::path& folder) {
-  const int fd = ::open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
-  if (fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
-  if (fd >= 0) ::close(fd);
-  throw ConfigError({fmt::format("--out {}: another calibrate is working in this folder; name another "
-                                 "one, or share its runs with --store {}",
-                                 folder.string(), (folder / "evaluations.sqlite").string())});
 }
 
 }  // namespace
@@ -99,12 +82,12 @@ RunSession::RunSession(const SessionOptions& o, const fs::path& folder)
       walltime_s_(seconds_of_walltime(o.max_walltime)),
       walltime_text_(o.max_walltime),
       start_(std::chrono::steady_clock::now()),
-      lock_fd_(locked(folder)),
+      lock_(folder),
       packings_(default_packing_folder()),
       store_(std::make_unique<RunStore>(o.store.empty() ? folder / "evaluations.sqlite"
                                                         : fs::path(o.store))),
-      workers_(std::make_unique<WorkerPool>(worker_command(o.max_lanes), threads_of(o))),
-      context_{packings_, threads_of(o), o.max_lanes, &interrupt_flag(), nullptr} {
+      workers_(std::make_unique<WorkerPool>(worker_command(o.max_lanes), threads_or_all(o.num_threads))),
+      context_{packings_, threads_or_all(o.num_threads), o.max_lanes, &interrupt_flag(), nullptr} {
   BrokerOptions options;
   options.run_timeout_s = o.run_timeout_s;
   options.stop = [this] { return wish(); };
@@ -113,10 +96,6 @@ RunSession::RunSession(const SessionOptions& o, const fs::path& folder)
   std::error_code none;
   fs::remove(folder / "STOP", none);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its write
-}
-
-RunSession::~RunSession() {
-  if (lock_fd_ >= 0) ::close(lock_fd_);
 }
 
 StopWish RunSession::wish() const {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/test_runs.hpp"
 
 namespace tilth {
@@ -45,7 +46,6 @@ class RunSession {
  public:
   /// @throws ConfigError if the folder is in use or the store cannot be opened
   RunSession(const SessionOptions& options, const std::filesystem::path& folder);
-  ~RunSession();
 
   const RunContext& context() const { return context_; }
   StopWish wish() const;
@@ -65,7 +65,7 @@ class RunSession {
   std::optional<double> walltime_s_;
   std::string walltime_text_;
   std::chrono::steady_clock::time_point start_;
-  int lock_fd_ = -1;
+  FolderLock lock_;
   PackingStore packings_;
   std::unique_ptr<RunStore> store_;
   std::unique_ptr<WorkerPool> workers_;

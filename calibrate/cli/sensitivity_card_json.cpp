@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "calibrate/cli/file_hash.hpp"
+#include "calibrate/cli/card_parts_json.hpp"
 #include "calibrate/cli/sensitivity_card.hpp"
-#include "calibrate/cli/tool_info.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/strict_json.hpp"
 
@@ -14,33 +11,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// NaN is not JSON: null where a number is not known.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json tool_json() {
-  return {{"name", "tilth"},
-          {"version", tool_version},
-          {"commit", tool_commit},
-          {"compiler", tool_compiler},
-          {"flags", tool_flags}};
-}
-
-Json inputs_json(const std::vector<std::filesystem::path>& files) {
-  Json list = Json::array();
-  for (const auto& file : files)
-    list.push_back({{"path", file.filename().string()}, {"sha256", sha256_of_file(file)}});
-  return list;
-}
-
 Json index_json(const SensitivitySummary& s, const IndexEstimate& i) {
   Json entry = {{"index", std::string(to_string(i.kind))},
                 {"parameter", s.free_names[i.parameter]}};
   if (i.kind == IndexKind::second_order) entry["other_parameter"] = s.free_names[i.other];
-  entry["value"] = number(i.value);
-  entry["lo95"] = number(i.low95);
-  entry["hi95"] = number(i.high95);
-  entry["bound_low"] = number(i.bound_low);
-  entry["bound_high"] = number(i.bound_high);
+  entry["value"] = json_number(i.value);
+  entry["lo95"] = json_number(i.low95);
+  entry["hi95"] = json_number(i.high95);
+  entry["bound_low"] = json_number(i.bound_low);
+  entry["bound_high"] = json_number(i.bound_high);
   entry["num_values"] = i.num_values;
   return entry;
 }
@@ -50,9 +29,9 @@ Json failures_json(const SensitivitySummary& s, const FailurePattern& p) {
   for (std::size_t j = 0; j < p.parameters.size(); ++j)
     parameters.push_back({{"parameter", s.free_names[j]},
                           {"p_value", p.parameters[j].p_value},
-                          {"share_low_third", number(p.parameters[j].shares[0])},
-                          {"share_middle_third", number(p.parameters[j].shares[1])},
-                          {"share_high_third", number(p.parameters[j].shares[2])}});
+                          {"share_low_third", json_number(p.parameters[j].shares[0])},
+                          {"share_middle_third", json_number(p.parameters[j].shares[1])},
+                          {"share_high_third", json_number(p.parameters[j].shares[2])}});
   return {{"num_points", p.num_runs},
           {"num_failed", p.num_failed},
           {"share", p.share()},
@@ -61,14 +40,14 @@ Json failures_json(const SensitivitySummary& s, const FailurePattern& p) {
 }
 
 Json noise_json(const FeatureSensitivity& f) {
-  return {{"share_of_one_run", number(f.noise.noise_share)},
-          {"lo95", number(f.noise_low95)},
-          {"hi95", number(f.noise_high95)},
-          {"variance_shared", number(f.noise.shared)},
-          {"variance_independent", number(f.noise.independent)},
-          {"variance_parameters", number(f.noise.parameters)},
-          {"variance_total", number(f.noise.total)},
-          {"mu_star_floor", number(f.noise_floor)}};
+  return {{"share_of_one_run", json_number(f.noise.noise_share)},
+          {"lo95", json_number(f.noise_low95)},
+          {"hi95", json_number(f.noise_high95)},
+          {"variance_shared", json_number(f.noise.shared)},
+          {"variance_independent", json_number(f.noise.independent)},
+          {"variance_parameters", json_number(f.noise.parameters)},
+          {"variance_total", json_number(f.noise.total)},
+          {"mu_star_floor", json_number(f.noise_floor)}};
 }
 
 Json feature_json(const SensitivitySummary& s, const FeatureSensitivity& f) {
@@ -80,8 +59,8 @@ Json feature_json(const SensitivitySummary& s, const FeatureSensitivity& f) {
                 {"packing_noise", noise_json(f)},
                 {"failures", failures_json(s, f.failures)}};
   if (s.options.method == SensitivityMethod::emulator)
-    entry["emulator"] = {{"leave_one_out_q2", number(f.emulator.q2)},
-                         {"leave_one_out_rms", number(f.emulator.rms)}};
+    entry["emulator"] = {{"leave_one_out_q2", json_number(f.emulator.q2)},
+                         {"leave_one_out_rms", json_number(f.emulator.rms)}};
   if (!f.no_indices.empty()) entry["no_indices_because"] = f.no_indices;
   entry["indices"] = indices;
   return entry;

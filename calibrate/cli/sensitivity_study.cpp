@@ -28,8 +28,7 @@ void append(const Problems& more, Problems& problems) {
 void read_soil(const SensitivityCommandOptions& o, SensitivityStudy& study) {
   const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
   study.soil = load_soil(folder);
-  for (const char* name : {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv"})
-    study.inputs.push_back(folder / name);
+  study.inputs = soil_tables(folder);
   if (!o.config.empty()) {
     FitOptions not_used;
     apply_run_config(o.config, study.soil, not_used);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace tilth {
 
@@ -13,5 +14,8 @@ std::filesystem::path data_root();
 
 /// The folder of --data, else of --soil under data_root(). @throws ConfigError
 std::filesystem::path chosen_soil_folder(const std::string& soil, const std::string& folder);
+
+/// The tables of a soil folder that are there: what a result depends on.
+std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder);
 
 }  // namespace tilth

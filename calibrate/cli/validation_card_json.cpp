@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "calibrate/cli/card_parts_json.hpp"
 #include "calibrate/cli/solver_version.hpp"
 #include "calibrate/cli/validation_card.hpp"
 #include "calibrate/config_error.hpp"
@@ -15,8 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Parameter parameter_from(const Json& p) {
   Parameter result;
   result.name = p.at("name");
@@ -24,11 +21,8 @@ Parameter parameter_from(const Json& p) {
   result.estimate = p.contains("bounds");
   result.log_scale = p.value("standard_error_of", "") == "ln(value)";
   if (result.estimate) {
-    result.lower = p["bounds"][0];
-    result.upper = p["bounds"][1];
-  } else {
-    result.lower = std::min(0.0, result.start);
-    result.upper = result.start + 1.0;
+    result.lower = p.at("bounds").at(0);
+    result.upper = p.at("bounds").at(1);
   }
   return result;
 }
@@ -38,7 +32,7 @@ Eigen::MatrixXd matrix_from(const Json& rows) {
   Eigen::MatrixXd m(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      const Json& value = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+      const Json& value = rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j));
       if (!value.is_number()) return {};
       m(i, j) = value;
     }
@@ -83,14 +77,14 @@ std::string validation_json(const Validation& v, const FittedUncertainty& fit, c
   Json targets = Json::array();
   for (const TargetResult& t : v.targets)
     targets.push_back({{"name", t.name},
-                       {"target", number(t.value)},
-                       {"sigma", number(t.sigma)},
+                       {"target", json_number(t.value)},
+                       {"sigma", json_number(t.sigma)},
                        {"sigma_of", t.log_transform ? "ln(value)" : "value"},
-                       {"sim", number(t.simulated)},
-                       {"sim_sd", number(t.seed_sd)},
-                       {"parameter_sd", number(t.parameter_sd)},
-                       {"sigma_total", number(t.sigma_total)},
-                       {"residual", number(t.residual)},
+                       {"sim", json_number(t.simulated)},
+                       {"sim_sd", json_number(t.seed_sd)},
+                       {"parameter_sd", json_number(t.parameter_sd)},
+                       {"sigma_total", json_number(t.sigma_total)},
+                       {"residual", json_number(t.residual)},
                        {"provenance", std::string(to_string(t.provenance))}});
   Json failures = Json::array();
   for (const FailedRun& f : v.failures) failures.push_back({{"seed", f.seed}, {"message", f.message}});
@@ -100,8 +94,8 @@ std::string validation_json(const Validation& v, const FittedUncertainty& fit, c
                     {"data", data_id},
                     {"preview", fit.preview},
                     {"criterion", fit.criterion},
-                    {"rms_residual", number(v.rms)},
-                    {"limit", number(v.limit)},
+                    {"rms_residual", json_number(v.rms)},
+                    {"limit", json_number(v.limit)},
                     {"passed", v.targets.empty() ? Json(nullptr) : Json(v.passed())},
                     {"n_seeds", v.num_seeds},
                     {"parameter_errors", v.has_parameter_errors},

@@ -123,6 +123,15 @@ struct Runners : F... {
 
 }  // namespace
 
+const char* name_of(Fidelity fidelity) {
+  switch (fidelity) {
+    case Fidelity::preview: return "preview";
+    case Fidelity::search: return "search";
+    case Fidelity::confirm: return "confirm";
+  }
+  return "";
+}
+
 const char* test_id(const TestConfig& config) { return ids[config.index()]; }
 
 std::vector<std::string> virtual_test_ids() { return {std::begin(ids), std::end(ids)}; }

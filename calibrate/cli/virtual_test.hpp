@@ -33,6 +33,9 @@ enum class Fidelity {
   confirm   ///< about 1500 spheres, slow
 };
 
+/// "preview", "search", "confirm"
+const char* name_of(Fidelity fidelity);
+
 /// "unconfined_compression", "direct_shear", ...
 std::vector<std::string> virtual_test_ids();
 

@@ -8,6 +8,7 @@
 
 #include "calibrate/cli/config_difference.hpp"
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/walltime.hpp"
 #include "calibrate/run_store.hpp"
 #include "tests/calibrate/soil_folder.hpp"
@@ -73,6 +74,18 @@ TEST_CASE("Session: time limit, run limit and STOP file end with a valid card an
     CHECK_THAT(read_text(folder / "limited/fit.json"), Contains("tilth.card/1"));
     CHECK_THAT(read_text(folder / "limited/fit_report.txt"), Contains("[[Fit Statistics]]"));
   }
+}
+
+TEST_CASE("Session: a folder another program works in is refused and stays where it is", "[cli][session]") {
+  const TempFolder folder("session_in_use");
+  prepare(folder);
+  fs::create_directory(folder.path() / "busy");
+  folder.write("busy/result.txt", "half done");
+  const FolderLock other_program(folder.path() / "busy");
+  const ProgramRun r = run_process(fit_into(folder, "busy"), folder.path());
+  CHECK(r.exit_code == exit_bad_input);
+  CHECK(r.says({"another calibrate is working in this folder"}));
+  CHECK(read_text(folder / "busy/result.txt") == "half done");
 }
 
 TEST_CASE("Session: what cannot be resumed is refused with every difference", "[cli][session]") {
