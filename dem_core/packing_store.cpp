@@ -3,6 +3,7 @@
 #include "dem_core/packing_store.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -20,6 +21,32 @@ std::uint64_t file_hash(const std::string& key) {
   std::uint64_t h = 1469598103934665603ULL;
   for (const char c : key) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   return h;
+}
+
+bool write_beside_and_rename(const std::filesystem::path& file, const std::string& text) {
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  const std::filesystem::path draft =
+      file.string() + fmt::format(".{}.{:x}", ::getpid(), reinterpret_cast<std::uintptr_t>(&text));
+  std::ofstream out(draft);
+  out << text;
+  out.close();
+  if (out) std::filesystem::rename(draft, file, error);
+  if (!out || error) {
+    std::error_code ignored;
+    std::filesystem::remove(draft, ignored);
+    return false;
+  }
+  return true;
+}
+
+PackingStore::Numbers read_numbers(const std::filesystem::path& file, const std::string& key) {
+  std::ifstream in(file);
+  std::string word;
+  if (!in || !std::getline(in, word) || word != key) return {};
+  PackingStore::Numbers values;
+  while (in >> word && word != "end") values.push_back(std::strtod(word.c_str(), nullptr));
+  return word == "end" ? values : PackingStore::Numbers();
 }
 
 }  // namespace
@@ -50,10 +77,19 @@ PackingStore::Numbers PackingStore::numbers(const std::string& key,
     const std::lock_guard lock(numbers_mutex_);
     if (const auto known = numbers_.find(key); known != numbers_.end()) return known->second;
   }
-  Numbers made = make();  // two threads may both come here; they make the same
+  // Two threads may both come here; they make the same.
+  const std::string full_key = fmt::format("tilth numbers {} {}", version_, key);
+  const std::filesystem::path file = version_.empty() ? "" : file_of(full_key);
+  Numbers found;
+  if (!file.empty()) found = read_numbers(file, full_key);
+  if (found.empty()) {
+    found = make();
+    if (!file.empty() && !found.empty())
+      write_beside_and_rename(file, fmt::format("{}\n{:a}\nend\n", full_key, fmt::join(found, "\n")));
+  }
   const std::lock_guard lock(numbers_mutex_);
-  if (!made.empty()) numbers_.emplace(key, made);
-  return made;
+  if (!found.empty()) numbers_.emplace(key, found);
+  return found;
 }
 
 std::shared_ptr<const Packing> read_packing(const std::filesystem::path& file,
@@ -82,33 +118,21 @@ std::shared_ptr<const Packing> read_packing(const std::filesystem::path& file,
 
 bool write_packing(const std::filesystem::path& file, const std::string& key,
                    const Packing& packing) {
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  const std::filesystem::path draft =
-      file.string() + fmt::format(".{}.{:x}", ::getpid(), reinterpret_cast<std::uintptr_t>(&packing));
-  {
-    std::ofstream out(draft);
-    if (!out) return false;
-    out << key << '\n'
-        << fmt::format("{} {:a} {:a}\n", packing.radius_m.size(), packing.mean_radius_m,
-                       packing.largest_overlap);
-    for (std::size_t i = 0; i < packing.radius_m.size(); ++i) {
-      const Vec3& x = packing.position_m[i];
-      out << fmt::format("{:a} {:a} {:a} {:a}\n", x.x(), x.y(), x.z(), packing.radius_m[i]);
-    }
-    out << "end\n";
-    out.close();
-    if (!out) {
-      std::filesystem::remove(draft, error);
-      return false;
-    }
+  std::string text = fmt::format("{}\n{} {:a} {:a}\n", key, packing.radius_m.size(),
+                                 packing.mean_radius_m, packing.largest_overlap);
+  for (std::size_t i = 0; i < packing.radius_m.size(); ++i) {
+    const Vec3& x = packing.position_m[i];
+    text += fmt::format("{:a} {:a} {:a} {:a}\n", x.x(), x.y(), x.z(), packing.radius_m[i]);
   }
-  std::filesystem::rename(draft, file, error);
-  if (error) std::filesystem::remove(draft, error);
-  return !error;
+  return write_beside_and_rename(file, text + "end\n");
 }
 
-PackingStore::PackingStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+PackingStore::PackingStore(std::filesystem::path folder, std::string version)
+    : folder_(std::move(folder)), version_(std::move(version)) {}
+
+std::filesystem::path PackingStore::file_of(const std::string& key) const {
+  return folder_.empty() ? folder_ : folder_ / fmt::format("{:016x}.txt", file_hash(key));
+}
 
 std::shared_ptr<const Packing> PackingStore::get(const PackingSpec& spec) {
   const std::string key = packing_key(spec);
@@ -120,8 +144,7 @@ std::shared_ptr<const Packing> PackingStore::get(const PackingSpec& spec) {
     slot = entry;
   }
   std::call_once(slot->made, [&] {
-    const std::filesystem::path file =
-        folder_.empty() ? folder_ : folder_ / fmt::format("{:016x}.txt", file_hash(key));
+    const std::filesystem::path file = file_of(key);
     if (!file.empty()) slot->packing = read_packing(file, key);
     if (slot->packing) return;
     const auto made = std::make_shared<Packing>(make_packing(spec));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 
@@ -57,10 +58,6 @@ bool DensityPreparation::advance(LaneRun& run, int lane) {
     return false;
   }
   if (stage_ == Stage::densify && densify(run, lane, settled)) {
-    const double e = void_ratio(run, lane);
-    // At rest without friction it is in its own densest state, whatever the cloud's was.
-    if (friction_ == 0.0 && e > states_.void_ratio(relative_density_))
-      states_.densest_void_ratio = e;
     set_friction(run, lane, own_friction_);
     press_.settle_again();
     stage_ = Stage::settle;
@@ -70,6 +67,9 @@ bool DensityPreparation::advance(LaneRun& run, int lane) {
   set_local_damping(run, lane, own_damping_);
   const double reached = states_.relative_density(void_ratio(run, lane));
   if (std::abs(reached - relative_density_) <= tolerance) return true;
+  // At rest without friction it is in its own densest state, whatever the cloud's mean is.
+  const bool is_own_densest = friction_ == 0.0;
+  if (is_own_densest && relative_density_ >= 1 - tolerance) return true;
   run.finish(lane, RunStatus::not_settled,
              fmt::format("prepared to relative density {:.2f} where {:.2f} was asked for (loosest "
                          "void ratio {:.4f}, densest {:.4f})",
@@ -78,17 +78,29 @@ bool DensityPreparation::advance(LaneRun& run, int lane) {
   return false;
 }
 
+namespace {
+
+constexpr double measured_at[] = {2.5e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 16e-3, 24e-3};  ///< stress over modulus
+
+}  // namespace
+
 double DensestStates::void_ratio_at(double ratio) const {
-  std::size_t k = 1;
-  while (k + 1 < void_ratio.size() && stress_over_modulus[k] < ratio) ++k;
-  const double share = (ratio - stress_over_modulus[k - 1]) /
-                       (stress_over_modulus[k] - stress_over_modulus[k - 1]);
-  return void_ratio[k - 1] + share * (void_ratio[k] - void_ratio[k - 1]);
+  const double x = std::clamp(ratio, std::begin(measured_at)[0], std::end(measured_at)[-1]);
+  return coefficients[0] + x * (coefficients[1] + x * coefficients[2]);
 }
 
 namespace {
 
-constexpr double measured_at[] = {1e-3, 2e-3, 4e-3, 16e-3};  ///< stress over modulus
+std::vector<double> parabola_through(const std::vector<double>& void_ratio) {
+  Eigen::MatrixX3d powers(void_ratio.size(), 3);
+  for (Eigen::Index k = 0; k < powers.rows(); ++k) {
+    const double x = measured_at[k];
+    powers.row(k) << 1, x, x * x;
+  }
+  const Eigen::Vector3d c = powers.colPivHouseholderQr().solve(
+      Eigen::Map<const Eigen::VectorXd>(void_ratio.data(), powers.rows()));
+  return {c.begin(), c.end()};
+}
 
 std::vector<ExperimentResult> run_densest(std::span<const std::size_t> state_of_lane,
                                           const Packing& cloud, const Vec3& size_m,
@@ -117,25 +129,24 @@ std::vector<ExperimentResult> run_densest(std::span<const std::size_t> state_of_
 DensestStates densest_states(PackingStore& packings, const PackingSpec& cloud,
                              const RunOptions& options) {
   DensestStates densest;
-  densest.stress_over_modulus.assign(std::begin(measured_at), std::end(measured_at));
   densest.status = RunStatus::completed;
-  densest.void_ratio = packings.numbers("densest " + packing_key(cloud), [&] {
+  densest.coefficients = packings.numbers("densest states, parabola: " + packing_key(cloud), [&] {
     const auto packing = packings.get(cloud);
     const std::vector<double> one_density(std::size(measured_at), 1.0);
     const std::vector<ExperimentResult> results =
         run_in_packs(one_density, options, [&](std::span<const std::size_t> state_of_lane) {
           return run_densest(state_of_lane, *packing, cloud.size_m, options);
         });
-    PackingStore::Numbers found;
+    std::vector<double> void_ratio;
     for (const ExperimentResult& r : results) {
       if (r.status != RunStatus::completed) {
         densest.status = r.status;
         densest.message = "the densest states could not be prepared: " + r.message;
         return PackingStore::Numbers();
       }
-      found.push_back(r.feature("void_ratio"));
+      void_ratio.push_back(r.feature("void_ratio"));
     }
-    return found;
+    return parabola_through(void_ratio);
   });
   return densest;
 }

@@ -10,6 +10,7 @@
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/export_decks.hpp"
 #include "calibrate/cli/run_folder.hpp"
+#include "calibrate/cli/solver_version.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
 
@@ -28,7 +29,7 @@ bool is_table(const std::string& format) { return format == "json" || format == 
 std::vector<ExportFile> files_of(const ExportOptions& o, const ExportSource& source) {
   if (o.format == "json") return {{"parameters.json", export_json(source)}};
   if (o.format == "csv") return {{"parameters.csv", export_csv(source)}};
-  PackingStore packings(default_packing_folder());
+  PackingStore packings(default_packing_folder(), solver_version);
   const SoilMaterial& material = source.set.material;
   if (o.format == "yade" || o.format == "pfc") {
     const ExportSpecimen s = bonded_specimen(material, o.num_particles, o.seed, packings);

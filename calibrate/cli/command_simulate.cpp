@@ -15,6 +15,7 @@
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/cli/solver_version.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
 #include "calibrate/parallel.hpp"
@@ -102,7 +103,7 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   if (!problems.empty()) throw ConfigError(problems);
   const std::filesystem::path folder = make_run_folder(o.out, o.experiment);
 
-  PackingStore packings(default_packing_folder());
+  PackingStore packings(default_packing_folder(), solver_version);
   const RunContext context{packings, threads_or_all(o.num_threads), 0, &interrupt_flag()};
   std::vector<std::uint64_t> seeds;
   for (int k = 0; k < o.num_seeds; ++k) seeds.push_back(o.seed + static_cast<std::uint64_t>(k));

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "calibrate/cli/solver_version.hpp"
 #include "calibrate/cli/test_runs.hpp"
 #include "calibrate/worker_loop.hpp"
 
@@ -16,7 +17,7 @@ void add_worker_options(CLI::App& command, WorkerOptions& o) {
 }
 
 int run_worker_command(const WorkerOptions& o) {
-  PackingStore packings(default_packing_folder());
+  PackingStore packings(default_packing_folder(), solver_version);
   return run_worker([&](std::span<const RunIdentity> members) {
     return simulate_members(members, packings, o.max_lanes);
   });

@@ -83,7 +83,7 @@ RunSession::RunSession(const SessionOptions& o, const fs::path& folder)
       walltime_text_(o.max_walltime),
       start_(std::chrono::steady_clock::now()),
       lock_(folder),
-      packings_(default_packing_folder()),
+      packings_(default_packing_folder(), solver_version),
       store_(std::make_unique<RunStore>(o.store.empty() ? folder / "evaluations.sqlite"
                                                         : fs::path(o.store))),
       workers_(std::make_unique<WorkerPool>(worker_command(o.max_lanes), threads_or_all(o.num_threads))),

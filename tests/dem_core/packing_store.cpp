@@ -101,6 +101,30 @@ TEST_CASE("packing store: a damaged or foreign file is ignored and replaced",
   CHECK(read_packing(folder.path / "absent.txt", key) == nullptr);
 }
 
+TEST_CASE("packing store: numbers are measured once per version of the program", "[dem_core][packing]") {
+  const TemporaryFolder folder;
+  int num_measured = 0;
+  const auto measured = [&](const std::string& version) {
+    return PackingStore(folder.path, version).numbers("densest", [&] {
+      ++num_measured;
+      return PackingStore::Numbers{0.1, -1.0 / 3.0};
+    });
+  };
+  const PackingStore::Numbers first = measured("one");
+  const std::filesystem::path file = only_file(folder.path);
+  CHECK(measured("one") == first);
+  CHECK(num_measured == 1);
+  const std::string good = read_all(file);
+  std::ofstream(file) << good.substr(0, good.size() - 5);
+  CHECK(measured("one") == first);
+  CHECK(num_measured == 2);
+  measured("two");
+  CHECK(num_measured == 3);
+  measured("");  // of no version: kept in memory only
+  measured("");
+  CHECK(num_measured == 5);
+}
+
 TEST_CASE("packing store: a folder that cannot be written only costs time", "[dem_core][packing]") {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "file") << "not a folder";
