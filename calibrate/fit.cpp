@@ -32,15 +32,6 @@ std::vector<std::string> all_problems(const std::vector<Parameter>& parameters,
   return found;
 }
 
-std::string under_determined_message(const FitContext& context) {
-  std::vector<std::string> names;
-  for (const std::size_t i : context.free) names.push_back(context.parameters[i].name);
-  return fmt::format(
-      "{} free parameters ({}) but only {} independent observations, priors included: hold some "
-      "parameters, give priors, add targets, or set force",
-      names.size(), fmt::join(names, ", "), context.summary.num_independent);
-}
-
 // The last stages need these even if the search would use up the whole budget.
 std::size_t reserve_for_the_end(const FitContext& context) {
   const auto seeds = static_cast<std::size_t>(context.options.num_search_seeds);
@@ -76,6 +67,7 @@ void prepare(FitContext& context) {
 void run_stages(FitContext& context) {
   run_design(context);         // 1. spread points: what can the model reach
   run_noise(context);          // 2. repeat seeds: what is noise
+  judge_gates(context);
   run_search_rounds(context);  // 3. emulator and global search, checked by real runs
   take_best_point(context);
   run_local_starts(context);   // 4. Levenberg-Marquardt from the best real points
@@ -164,9 +156,10 @@ FitSummary fit(const std::vector<Parameter>& parameters, const std::vector<Targe
   if (holdout != nullptr)
     context.holdout.emplace(*holdout, targets, "hold-outs", ledger, TargetScope::holdouts);
   prepare(context);
-  if (context.summary.num_free > context.summary.num_independent && !options.force) {
+  if (const Gate gate = determination_gate(context); !gate.passed && !options.force) {
+    context.summary.gates = {gate};
     context.summary.termination = Termination::under_determined;
-    context.summary.message = under_determined_message(context);
+    context.summary.message = gate.words;
     return context.summary;
   }
   run_stages(context);

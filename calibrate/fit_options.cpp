@@ -74,6 +74,7 @@ std::vector<std::string> problems(const FitOptions& options) {
   not_negative("chi_square_tolerance", options.chi_square_tolerance);
   not_negative("function_tolerance", options.function_tolerance);
   not_negative("parameter_tolerance", options.parameter_tolerance);
+  not_negative("secant_tolerance", options.secant_tolerance);
   not_negative("gradient_tolerance", options.gradient_tolerance);
   positive("log_step", options.log_step);
   positive("linear_step", options.linear_step);

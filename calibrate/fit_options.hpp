@@ -13,6 +13,8 @@
 
 namespace tilth {
 
+struct Gate;
+
 /// How the local search takes derivatives.
 enum class DerivativeRule {
   secants,       ///< one wide step per parameter: for simulators with noise
@@ -47,6 +49,9 @@ struct FitOptions {
   double chi_square_tolerance = 0.01;  ///< 0 = off
   double function_tolerance = 1e-6;   ///< ... or when it changes chi-square by less than this share
   double parameter_tolerance = 1e-5;  ///< ... or by a step below this share of the unit cube
+  /// ... or, with secants, by a step below this share of their half-width: the noise of single runs
+  /// lets no secant judge a step so much shorter than itself.
+  double secant_tolerance = 0.05;
   double gradient_tolerance = 1e-10;  ///< ... or when no slope of chi-square / 2 is larger
   DerivativeRule derivatives = DerivativeRule::secants;
   /// Half-width of a central secant where the parameter states none: in ln v if log_scale ...
@@ -65,6 +70,7 @@ struct FitOptions {
   bool force = false;          ///< fit even if there are more free parameters than observations
   std::function<bool()> should_stop;              ///< asked before every batch; may be empty
   std::function<void(const Progress&)> progress;  ///< called after every batch; may be empty
+  std::function<void(const Gate&)> report_gate;   ///< called for each before the search; may be empty
 };
 
 /// A preset for a first look: fewer points, one packing, one start. Same stages, wider intervals.

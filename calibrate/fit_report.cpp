@@ -73,36 +73,13 @@ void fit_statistics(const FitSummary& s, std::string& text) {
   }
 }
 
-void noise_gate(const FitSummary& s, std::string& text) {
-  double largest = 0.0;
-  for (const TargetResult& target : s.targets) {
-    largest = std::max(largest, target.seed_sd / target.sigma);
-  }
-  if (s.num_noise_seeds < 2) {
-    report_line(text, "noise floor        : failed (not measured: {} repeat seeds)",
-                s.num_noise_seeds);
-  } else {
-    report_line(
-        text,
-        "noise floor        : passed (measured on {} seeds; largest seed sd / sigma = {:.3g})",
-        s.num_noise_seeds, largest);
-  }
-}
-
 void gates(const FitSummary& s, std::string& text) {
   text += "[[Gates]]\n";
-  noise_gate(s, text);
-  int unreachable = 0;
-  int unknown = 0;
-  for (const TargetResult& target : s.targets) {
-    unreachable += target.reachability == Reachability::unreachable ? 1 : 0;
-    unknown += target.reachability == Reachability::unknown ? 1 : 0;
-  }
-  report_line(text, "reachability       : {} ({} of {} targets unreachable, {} unknown)",
-              unreachable == 0 && unknown == 0 ? "passed" : "failed", unreachable, s.targets.size(),
-              unknown);
-  report_line(text, "under-determination: {} ({} free parameters, {} independent observations)",
-              s.num_free <= s.num_independent ? "passed" : "failed", s.num_free, s.num_independent);
+  for (const Gate& gate : s.gates)
+    report_line(text, "{:<19}: {} ({})", gate.name, gate.passed ? "passed" : "failed", gate.words);
+  const auto unreachable =
+      std::ranges::count(s.targets, Reachability::unreachable, &TargetResult::reachability);
+  report_line(text, "after the search   : {} of {} targets unreachable", unreachable, s.targets.size());
   if (std::isnan(s.holdout_rms)) {
     report_line(text, "hold-out           : {}",
                 s.holdouts.empty() ? "not tested (no hold-out targets)" : "failed (not predicted)");

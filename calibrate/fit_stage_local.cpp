@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibrate/fit_stages.hpp"
+#include "calibrate/secants.hpp"
 #include "calibrate/seed_average.hpp"
 
 namespace tilth {
@@ -47,12 +48,20 @@ double scaled_tolerance(const FitContext& context) {
   return context.options.chi_square_tolerance * std::max(1.0, reduced);
 }
 
+double step_tolerance(const FitContext& context) {
+  const FitOptions& o = context.options;
+  if (o.derivatives != DerivativeRule::secants) return o.parameter_tolerance;
+  const Eigen::VectorXd steps =
+      secant_steps(context.parameters, o.log_step, o.linear_step);
+  return std::max(o.parameter_tolerance, o.secant_tolerance * steps.minCoeff());
+}
+
 LeastSquaresOptions local_options(FitContext& context) {
   LeastSquaresOptions options;
   options.max_iterations = context.options.max_iterations;
   options.absolute_tolerance = scaled_tolerance(context);
   options.function_tolerance = context.options.function_tolerance;
-  options.parameter_tolerance = context.options.parameter_tolerance;
+  options.parameter_tolerance = step_tolerance(context);
   options.gradient_tolerance = context.options.gradient_tolerance;
   options.should_stop = [&context] { return is_blocked(context.ledger); };
   return options;

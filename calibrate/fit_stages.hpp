@@ -145,6 +145,12 @@ Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
                                 const std::vector<std::uint64_t>& seeds);
 void run_noise(FitContext& context);
 
+// fit_stage_gates.cpp
+/// Are there as many independent observations, priors included, as free parameters?
+Gate determination_gate(const FitContext& context);
+/// All gates, on the runs of design and noise floor: into the summary and to options.report_gate.
+void judge_gates(FitContext& context);
+
 // fit_stage_search.cpp
 void run_search_rounds(FitContext& context);
 

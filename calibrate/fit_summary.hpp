@@ -129,6 +129,13 @@ struct CurveSampleSize {
   double effective = not_known;  ///< see effective_sample_size()
 };
 
+/// A question that is answered before the search spends its simulations.
+struct Gate {
+  std::string name;  ///< "noise floor", "reachability", "under-determination"
+  bool passed = false;
+  std::string words;  ///< why, with the numbers
+};
+
 /// One local search.
 struct StartResult {
   std::string stage;      ///< "local search", or "bias" for a refit
@@ -157,6 +164,7 @@ struct FitSummary {
   std::vector<TargetResult> targets;        ///< the fitted ones, in table order
   std::vector<TargetResult> holdouts;
 
+  std::vector<Gate> gates;                ///< as judged before the search
   std::vector<TargetConflict> conflicts;  ///< largest misfit first
 
   double chi_square_start = not_known;  ///< start values, first search seed

@@ -146,6 +146,10 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   // 3. fit
   ProgressDisplay display(terminal, [&log](const std::string& line) { log.info(line); });
   job.options.progress = [&display](const Progress& p) { display.show(p); };
+  job.options.report_gate = [&log](const Gate& gate) {
+    log.log(gate.passed ? spdlog::level::info : spdlog::level::warn, "gate {}: {} ({})", gate.name,
+            gate.passed ? "passed" : "failed", gate.words);
+  };
   job.options.should_stop = [&session] { return session.should_stop(); };
   using enum TargetScope;
   const Simulator search = dem_simulator(job.soil, job.search, session.context(), fitted);

@@ -194,6 +194,13 @@ Json failures_json(const FitSummary& summary) {
   return list;
 }
 
+Json gates_json(const FitSummary& s) {
+  Json list = Json::array();
+  for (const Gate& gate : s.gates)
+    list.push_back({{"name", gate.name}, {"passed", gate.passed}, {"words", gate.words}});
+  return list;
+}
+
 Json stages_json(const FitSummary& summary) {
   Json list = Json::array();
   for (const StageCount& s : summary.stages)
@@ -248,6 +255,7 @@ std::string fit_card_json(const SoilData& soil, const FitSummary& s, const FitCa
                             {"num_starts_at_best", s.num_starts_at_best}};
   card["validation"] = holdout_json(s, c.criterion);
   card["scope"] = scope_json(material, c);
+  card["gates"] = gates_json(s);
   card["warnings"] = s.warnings;
   card["failures"] = failures_json(s);
   card["cost"] = {{"num_simulations", s.num_simulations}, {"stages", stages_json(s)}};
@@ -275,6 +283,7 @@ std::string run_config_json(const SoilData& soil, const FitOptions& o, const Fit
                    {"chi_square_tolerance", o.chi_square_tolerance},
                    {"function_tolerance", o.function_tolerance},
                    {"parameter_tolerance", o.parameter_tolerance},
+                   {"secant_tolerance", o.secant_tolerance},
                    {"gradient_tolerance", o.gradient_tolerance},
                    {"rescale_sigma", o.rescale_sigma},
                    {"log_step", o.log_step},

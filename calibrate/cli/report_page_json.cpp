@@ -88,6 +88,11 @@ std::string fit_section(const Json& card) {
                       number_at(s, "chi_square_fresh_seeds"), number_at(s, "num_observations"),
                       number_at(s, "num_free"), number_at(s, "num_independent"), text_at(s, "sigma"),
                       number_at(s, "num_starts_at_best"), number_at(s, "num_starts"));
+  HtmlTable gates{{"gate before the search", "", ""}, {}};
+  for (const Json& g : card.value("gates", Json::array()))
+    gates.rows.push_back({text_at(g, "name"), coloured(g.value("passed", false) ? "passed" : "failed", g.value("passed", false)),
+                          text_at(g, "words")});
+  if (!gates.rows.empty()) text += html_table(gates);
   for (const Json& w : card["warnings"])
     if (w.is_string()) text += "<p class=\"warn\">" + html_escaped(w.get<std::string>()) + "</p>\n";
   return text + "<details><summary>parameters that were held</summary>" + html_table(held) + "</details>\n";

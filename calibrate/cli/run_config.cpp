@@ -24,6 +24,7 @@ void read_fit_object(JsonObjectReader& fit, FitOptions& o) {
   count("max_bias_rounds", o.max_bias_rounds, 0);
   const JsonRange positive{.lower = 0.0, .open_lower = true};
   o.chi_square_tolerance = fit.number("chi_square_tolerance", o.chi_square_tolerance, positive);
+  o.secant_tolerance = fit.number("secant_tolerance", o.secant_tolerance, positive);
   o.log_step = fit.number("log_step", o.log_step, positive);
   o.linear_step = fit.number("linear_step", o.linear_step, positive);
   o.holdout_limit = fit.number("holdout_limit", o.holdout_limit, positive);

@@ -233,6 +233,31 @@ TEST_CASE("Fit: a target outside everything the model can do is called unreachab
   REQUIRE(summary.has_unreachable_target());
 }
 
+TEST_CASE("Fit: gates are judged before the search and name what is wrong", "[calibrate][fit]") {
+  std::vector<Target> targets = soil_targets(0.05, 0);
+  targets[3].value = 5.0;  // 0.2 + friction <= 1.7
+  targets[1].sigma = 0.01;
+  FitOptions options = small_options();
+  std::string stage;
+  std::vector<Gate> told;
+  options.progress = [&](const Progress& p) { stage = p.stage; };
+  options.report_gate = [&](const Gate& gate) {
+    CHECK(stage == "noise floor");
+    told.push_back(gate);
+  };
+  const FitSummary summary =
+      fit(soil_parameters(), targets, simulator_of(soil_formula, 0.03), nullptr, options);
+  REQUIRE(summary.gates.size() == 3);
+  REQUIRE(told.size() == 3);
+  CHECK(summary.gates[0].passed);
+  CHECK_THAT(summary.gates[0].words, Contains("scatters more than the measurement in 1 of 6") &&
+                                         Contains(targets[1].name));
+  CHECK_FALSE(summary.gates[1].passed);
+  CHECK_THAT(summary.gates[1].words, Contains("1 of 6") && Contains(targets[3].name) && Contains("sigma"));
+  CHECK(summary.gates[2].passed);
+  CHECK_THAT(summary.gates[2].words, Contains("3 free parameters"));
+}
+
 TEST_CASE("Fit: the bias of the search model is found, removed and reported with its error",
           "[calibrate][fit]") {
   const double factor = 1.25;

@@ -7,21 +7,12 @@
 
 #include "calibrate/fit.hpp"
 #include "tests/calibrate/formula_models.hpp"
+#include "tests/support/binomial.hpp"
 
 using namespace tilth;
 using namespace tilth::test;
 
 namespace {
-
-// P(X <= k) of a binomial distribution, summed from its logarithms.
-double binomial_cdf(int k, int n, double p) {
-  double sum = 0.0;
-  for (int i = 0; i <= k; ++i) {
-    sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(i + 1.0) - std::lgamma(n - i + 1.0) +
-                    i * std::log(p) + (n - i) * std::log1p(-p));
-  }
-  return sum;
-}
 
 // Only the stages an interval depends on.
 FitOptions local_only() {
