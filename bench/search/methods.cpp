@@ -74,7 +74,8 @@ class PlainObjective {
   std::optional<Eigen::VectorXd> residuals(const Eigen::VectorXd& unit) {
     const auto [entry, is_new] = memory_.try_emplace(std::vector<double>(unit.begin(), unit.end()));
     if (!is_new) return entry->second;
-    if (judge_.outcome.num_simulations + static_cast<std::size_t>(num_packings_) > most_simulations)
+    if (judge_.outcome.num_simulations + static_cast<std::size_t>(num_packings_) >
+        stand_in_.most_simulations)
       throw Ended{};
     ++judge_.outcome.num_calls;
     const std::optional<Eigen::VectorXd> mean = mean_over_packings(unit);
@@ -250,7 +251,7 @@ Outcome run_nlopt(const StandIn& stand_in, const Twin& twin, NloptAlgorithm algo
   };
   const Eigen::VectorXd lower = Eigen::VectorXd::Zero(3);
   const Eigen::VectorXd upper = Eigen::VectorXd::Ones(3);
-  const auto cap = static_cast<int>(most_simulations);
+  const auto cap = static_cast<int>(stand_in.most_simulations);
   return with_restarts(twin, objective, [&](const Eigen::VectorXd& start, std::uint64_t number) {
     minimise_with_nlopt(value, lower, upper, start, {algorithm, cap, 1e-3, number + 1});
   });

@@ -18,7 +18,6 @@ namespace tilth::bench {
 /// cannot be told from the truth.
 inline constexpr double noise_floor = 3.0;
 inline constexpr double strict_floor = 1.0;  ///< one standard error of one parameter
-inline constexpr std::size_t most_simulations = 2000;
 
 /// Simulations after which the best point so far was first inside. "Best" is by the method's own
 /// noisy chi-square; only then is the noise-free one looked at. Empty: never within the cap.

@@ -5,6 +5,7 @@
 //
 //     build/release/bin/search_comparison          # 30 twins per data case
 //     build/release/bin/search_comparison 5        # fewer
+//     build/release/bin/search_comparison --grains # three twins of the DEM problem itself, an hour
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -16,7 +17,9 @@
 
 #include "bench/search/comparison.hpp"
 #include "bench/search/methods.hpp"
+#include "bench/search/grains.hpp"
 #include "bench/search/stand_in.hpp"
+#include "calibrate/parallel.hpp"
 
 namespace {
 
@@ -45,14 +48,18 @@ FitOptions small_design() {
   return options;
 }
 
-std::vector<Method> methods_on(const StandIn& stand_in) {
-  std::vector<Method> methods{
+std::vector<Method> fits_on(const StandIn& stand_in) {
+  return {
       {"`fit()`, defaults", false,
        [&](const Twin& twin) { return run_fit(stand_in, twin, FitOptions{}); }},
       {"`fit()`, quick preset", false,
        [&](const Twin& twin) { return run_fit(stand_in, twin, quick_fit_options()); }},
       {"`fit()`, 8 design points", false,
        [&](const Twin& twin) { return run_fit(stand_in, twin, small_design()); }}};
+}
+
+std::vector<Method> methods_on(const StandIn& stand_in) {
+  std::vector<Method> methods = fits_on(stand_in);
   const std::vector<std::pair<std::string, NloptAlgorithm>> algorithms{
       {"NLopt BOBYQA", NloptAlgorithm::bobyqa},
       {"NLopt Sbplx", NloptAlgorithm::sbplx},
@@ -77,10 +84,12 @@ std::vector<Method> methods_on(const StandIn& stand_in) {
   return methods;
 }
 
-Row run_method(const Method& method, const std::vector<Twin>& twins) {
+Row run_method(const Method& method, const std::vector<Twin>& twins, std::size_t most_simulations) {
   Row row{&method, {}, {}, {}, {}, 0};
-  for (const Twin& twin : twins) {
-    const Outcome outcome = method.run(twin);
+  std::vector<Outcome> outcomes(twins.size());
+  parallel_for_each_index(twins.size(), threads_or_all(0),
+                          [&](std::size_t i) { outcomes[i] = method.run(twins[i]); });
+  for (const Outcome& outcome : outcomes) {
     row.floor.push_back(outcome.to_floor);
     row.strict.push_back(outcome.to_strict_floor);
     row.calls.push_back(outcome.calls_to_floor);
@@ -92,12 +101,12 @@ Row run_method(const Method& method, const std::vector<Twin>& twins) {
   return row;
 }
 
-std::string floor_cells(const Counts& counts) {
+std::string floor_cells(const Counts& counts, std::size_t most_simulations) {
   return fmt::format("{:g} | {:g} | {}/{}", median(counts, most_simulations),
                      quantile(counts, 0.9, most_simulations), num_reached(counts), counts.size());
 }
 
-void print_table(const std::vector<Row>& rows) {
+void print_table(const std::vector<Row>& rows, std::size_t most_simulations) {
   std::vector<Counts> plain;
   std::vector<Counts> plain_strict;
   for (const Row& row : rows) {
@@ -113,8 +122,8 @@ void print_table(const std::vector<Row>& rows) {
     const Ratio ratio = ratio_to_best(row.floor, plain, most_simulations);
     const Ratio strict = ratio_to_best(row.strict, plain_strict, most_simulations);
     fmt::print("| {} | {} | {:.2f} ({:.2f}-{:.2f}) | {:g} | {} | {:.2f} ({:.2f}-{:.2f}) |\n",
-               row.method->name, floor_cells(row.floor), ratio.value, ratio.lo95, ratio.hi95,
-               median(row.calls, most_simulations), floor_cells(row.strict), strict.value,
+               row.method->name, floor_cells(row.floor, most_simulations), ratio.value, ratio.lo95, ratio.hi95,
+               median(row.calls, most_simulations), floor_cells(row.strict, most_simulations), strict.value,
                strict.lo95, strict.hi95);
   }
   for (const Row& row : rows) {
@@ -128,16 +137,41 @@ void print_table(const std::vector<Row>& rows) {
 }
 
 void print_case(const std::string& name, const StandIn& stand_in, const Eigen::VectorXd& noise,
-                int num_twins) {
+                int num_twins, const std::vector<Method>& methods) {
   std::vector<Twin> twins;
   for (int i = 0; i < num_twins; ++i) {
     twins.push_back(make_twin(stand_in, noise, static_cast<std::uint64_t>(i + 1)));
   }
-  const std::vector<Method> methods = methods_on(stand_in);
   std::vector<Row> rows;
-  for (const Method& method : methods) rows.push_back(run_method(method, twins));
+  for (const Method& method : methods)
+    rows.push_back(run_method(method, twins, stand_in.most_simulations));
   fmt::print("\n{}\n\n", name);
-  print_table(rows);
+  print_table(rows, stand_in.most_simulations);
+}
+
+// A tenth of the methods' cap and the plain methods that were any good on the stand-in, with ISRES.
+std::vector<Method> methods_on_grains(const StandIn& stand_in) {
+  std::vector<Method> methods = fits_on(stand_in);
+  for (const auto& [name, algorithm] : {std::pair{"NLopt BOBYQA", NloptAlgorithm::bobyqa},
+                                        {"NLopt Sbplx", NloptAlgorithm::sbplx},
+                                        {"NLopt CRS2", NloptAlgorithm::crs2},
+                                        {"NLopt ISRES", NloptAlgorithm::isres}})
+    methods.push_back({fmt::format("{}, 1 packing", name), true, [&stand_in, algorithm](const Twin& twin) {
+                         return run_nlopt(stand_in, twin, algorithm, 1);
+                       }});
+  for (const int num_packings : {1, 3})
+    methods.push_back({fmt::format("Ceres, step 0.05, {} packing{}", num_packings, num_packings > 1 ? "s" : ""),
+                       true, [&stand_in, num_packings](const Twin& twin) {
+                         return run_ceres(stand_in, twin, 0.05, num_packings);
+                       }});
+  return methods;
+}
+
+void compare_on_grains(StandIn stand_in, const Eigen::VectorXd& noise) {
+  stand_in.most_simulations = 150;
+  stand_in.grains = loamy_sand_grains();
+  print_case("The grains themselves, laboratory data, three twins, at most 150 simulations", stand_in, noise, 3,
+             methods_on_grains(stand_in));
 }
 
 void print_stand_in(const StandIn& stand_in) {
@@ -157,9 +191,10 @@ void print_stand_in(const StandIn& stand_in) {
 }  // namespace
 
 int main(int num_arguments, char** arguments) {
-  const int num_twins = num_arguments > 1 ? std::atoi(arguments[1]) : 30;
+  const bool on_grains = num_arguments > 1 && std::string(arguments[1]) == "--grains";
+  const int num_twins = num_arguments > 1 && !on_grains ? std::atoi(arguments[1]) : 30;
   if (num_twins < 1) {
-    fmt::print(stderr, "usage: search_comparison [number of twins]\n");
+    fmt::print(stderr, "usage: search_comparison [number of twins | --grains]\n");
     return 2;
   }
   try {
@@ -169,12 +204,18 @@ int main(int num_arguments, char** arguments) {
     // 5 % on stresses and moduli, 1.5 deg on the friction angle: docs/twins.md.
     Eigen::VectorXd laboratory = Eigen::VectorXd::Constant(4, 0.05);
     laboratory[0] = 1.5 * std::numbers::pi / 180.0;
+    if (on_grains) {
+      compare_on_grains(stand_in, laboratory);
+      return 0;
+    }
     Eigen::VectorXd literature(4);
     for (std::size_t k = 0; k < 4; ++k) {
       literature[static_cast<Eigen::Index>(k)] = stand_in.targets[k].sigma;
     }
-    print_case("Laboratory data (5 %, 1.5 deg)", stand_in, laboratory, num_twins);
-    print_case("Data of the shipped soil (its own sigma)", stand_in, literature, num_twins);
+    print_case("Laboratory data (5 %, 1.5 deg)", stand_in, laboratory, num_twins,
+               methods_on(stand_in));
+    print_case("Data of the shipped soil (its own sigma)", stand_in, literature, num_twins,
+               methods_on(stand_in));
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

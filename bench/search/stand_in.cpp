@@ -174,6 +174,7 @@ Eigen::VectorXd StandIn::variance() const { return packing_sd.cwiseAbs2() + chao
 
 Evaluation StandIn::run(const Eigen::VectorXd& physical, std::uint64_t seed,
                         std::uint64_t stream) const {
+  if (grains) return grains(physical, std::span(&seed, 1)).front();
   Eigen::VectorXd unit(physical.size());
   std::uint64_t place = scrambled(stream);
   for (Eigen::Index j = 0; j < unit.size(); ++j) {
@@ -216,6 +217,8 @@ Twin make_twin(const StandIn& stand_in, const Eigen::VectorXd& noise, std::uint6
   for (int i = 0; i < num_data_packings; ++i) {
     const Evaluation run = stand_in.run(physical_point(stand_in.parameters, twin.truth),
                                         data_packings + static_cast<std::uint64_t>(i), stream);
+    if (run.status != EvaluationStatus::completed)
+      throw std::runtime_error("the truth itself fails: " + run.message);
     for (Eigen::Index k = 0; k < data.size(); ++k) {
       data[k] += transformed(twin.targets[static_cast<std::size_t>(k)], run.features[k]) /
                  num_data_packings;
@@ -234,6 +237,7 @@ Twin make_twin(const StandIn& stand_in, const Eigen::VectorXd& noise, std::uint6
 
 Simulator simulator_of(const StandIn& stand_in, const Twin& twin) {
   return [&](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t> seeds) {
+    if (stand_in.grains) return stand_in.grains(parameters, seeds);
     std::vector<Evaluation> runs;
     for (Eigen::Index i = 0; i < parameters.cols(); ++i) {
       runs.push_back(

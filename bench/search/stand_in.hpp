@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // SPDX-FileCopyrightText: 2026 the Tilth authors
-// A fast stand-in of the loamy-sand problem: emulators of stored preview runs, with packing noise.
+// A fast stand-in of the loamy-sand problem: emulators of stored preview runs, with packing noise; or,
+// to check it, the grains themselves.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -32,6 +34,12 @@ struct StandIn {
   Eigen::VectorXd packing_sd;         ///< from parameter sets run on several packings
   Eigen::VectorXd chaos_sd;           ///< from neighbouring parameter sets on one packing
   std::size_t num_training_runs = 0;
+  /// If set, runs are simulated by it (parameters: the free ones, physical, one column per member) and
+  /// the emulators only judge.
+  std::function<std::vector<Evaluation>(const Eigen::MatrixXd& parameters,
+                                        std::span<const std::uint64_t> seeds)>
+      grains;
+  std::size_t most_simulations = 2000;  ///< of one plain search
 
   /// m(u). @shape unit (3), result (num_targets)
   Eigen::VectorXd mean(const Eigen::VectorXd& unit) const;
