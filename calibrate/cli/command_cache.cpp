@@ -40,9 +40,13 @@ int list(const RunStore& store) {
   return exit_done;
 }
 
+std::string reason_to_show(const RunRecord& r) {
+  return r.state == RunState::completed ? "" : r.reason;
+}
+
 void show_one(const RunRecord& r) {
   std::cout << fmt::format("key {}\n{} {} ({} tries)\n{} under {}, packing {}, {}\n", r.key,
-                           to_string(r.state), r.reason, r.num_tries, r.identity.test,
+                           to_string(r.state), reason_to_show(r), r.num_tries, r.identity.test,
                            r.identity.condition, r.identity.seed, r.identity.solver);
   std::cout << fmt::format("time step {:.6g} s, {} steps, inertial number {:.3g}, {:.3g} s on {}\n",
                            r.dt_s, r.num_steps, r.inertial_number, r.wall_s, r.host);
@@ -64,7 +68,7 @@ int show(const RunStore& store, const CacheOptions& o) {
     const RunRecord r = *store.find(key);
     std::cout << fmt::format("{} {:<9} {:<22} {:<16} packing {:<6} {}\n", key.substr(0, 12),
                              to_string(r.state), r.identity.test, r.identity.condition,
-                             r.identity.seed, r.state == RunState::completed ? "" : r.reason);
+                             r.identity.seed, reason_to_show(r));
   }
   std::cout << fmt::format("{} of {} runs shown; --key with the first digits of a key selects\n",
                            num_shown, keys.size());
