@@ -205,7 +205,7 @@ struct FitSummary {
   std::string profile_source;              ///< on what they were drawn, in words
   double profile_level = not_known;        ///< chi-square difference of the 95 % interval
   std::vector<EquivalentSet> equivalence_family;  ///< the optimum first; empty without profiles
-  std::vector<CurveSampleSize> sample_sizes;      ///< empty unless curves were given
+  std::vector<CurveSampleSize> sample_sizes;      ///< filled by who reruns the tests; fit() sees no curves
   Eigen::MatrixXd seed_covariance;           ///< T of the fitted targets, one simulation
 
   int num_bias_rounds = 0;
