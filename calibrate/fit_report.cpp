@@ -67,6 +67,8 @@ void fit_statistics(const FitSummary& s, std::string& text) {
                                       : report_number(s.r_squared));
   report_line(text, "best value found {} times of {} starts", s.num_starts_at_best, s.num_starts);
   what_error_bars_mean(s, text);
+  report_line(text, "effective sample size of simulated - measured, per curve{}",
+              s.sample_sizes.empty() ? ": - (no measured curve was compared)" : ":");
   for (const CurveSampleSize& curve : s.sample_sizes) {
     report_line(text, "effective sample size of {}: {:.1f} of {} points", curve.curve,
                 curve.effective, curve.num_points);

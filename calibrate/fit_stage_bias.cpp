@@ -14,9 +14,8 @@ constexpr double settled_shift = 0.1;  // standard errors
 
 // Measures the bias at the optimum. False if no confirming run completed.
 bool measure_bias(FitContext& context) {
-  const Eigen::MatrixXd samples = repeat_on_seeds(
-      context, *context.confirm, context.optimum->unit,
-      stage_seeds(context.options, SeedUse::confirm, context.options.num_confirm_seeds));
+  const Eigen::MatrixXd samples = repeat_optimum(context, *context.confirm, SeedUse::confirm,
+                                                 context.options.num_confirm_seeds);
   if (samples.cols() == 0) return false;
   context.num_bias_seeds = static_cast<int>(samples.cols());
   context.confirm_variance = moderated_variance(samples, context.seed_variance);

@@ -19,9 +19,8 @@ Prediction predict(FitContext& context) {
       context.num_bias_seeds > 0 ? context.confirm_variance : context.seed_variance;
   const Optimum& optimum = *context.optimum;
   Evaluator& evaluator = context.num_bias_seeds > 0 ? *context.confirm : context.search;
-  const Eigen::MatrixXd samples = repeat_on_seeds(
-      context, evaluator, optimum.unit,
-      stage_seeds(context.options, SeedUse::fresh, context.options.num_fresh_seeds));
+  const Eigen::MatrixXd samples =
+      repeat_optimum(context, evaluator, SeedUse::fresh, context.options.num_fresh_seeds);
   context.summary.num_fresh_seeds = static_cast<int>(samples.cols());
   if (samples.cols() > 0) {
     return {samples.rowwise().mean(), one / static_cast<double>(samples.cols()), one};
@@ -34,24 +33,20 @@ Eigen::VectorXd parameter_deviations(const FitContext& context,
                                      const std::optional<Secants>& secants) {
   const auto n = static_cast<Eigen::Index>(context.targets.size());
   if (!context.uncertainty || !secants) return Eigen::VectorXd::Constant(n, not_known);
-  const Eigen::MatrixXd& jacobian = secants->jacobian;
-  const Eigen::MatrixXd half = jacobian * context.uncertainty->covariance;
-  return half.cwiseProduct(jacobian).rowwise().sum().cwiseSqrt();
+  return propagated_deviation(secants->jacobian, context.uncertainty->covariance);
 }
 
 // Hold-outs with a simulator of their own: on the fresh seeds, and on the secants of the first.
 void predict_holdouts(FitContext& context, Prediction& prediction, Eigen::VectorXd& parameter_sd) {
-  const Optimum& optimum = *context.optimum;
-  const std::vector<std::uint64_t> seeds =
-      stage_seeds(context.options, SeedUse::fresh, context.options.num_fresh_seeds);
-  const Eigen::MatrixXd samples = repeat_on_seeds(context, *context.holdout, optimum.unit, seeds);
+  const Eigen::MatrixXd samples = repeat_optimum(context, *context.holdout, SeedUse::fresh,
+                                                 context.options.num_fresh_seeds);
   if (samples.cols() == 0) {
     context.summary.warnings.emplace_back("no run of the hold-outs completed");
     return;
   }
   const Eigen::VectorXd own_sd = parameter_deviations(
-      context,
-      derivatives_at(context, *context.holdout, optimum.unit, std::span(seeds).first(1)));
+      context, derivatives_at(context, *context.holdout, context.optimum->unit,
+                              stage_seeds(context.options, SeedUse::fresh, 1)));
   const Eigen::VectorXd variance = holdout_variance(context, samples, prediction.variance_of_one);
   for (std::size_t target = 0; target < context.targets.size(); ++target) {
     if (!context.targets[target].holdout) continue;
@@ -67,20 +62,8 @@ TargetResult compare(const FitContext& context, const Prediction& prediction,
                      const Eigen::VectorXd& parameter_sd, std::size_t target) {
   const Target& t = context.targets[target];
   const auto k = static_cast<Eigen::Index>(target);
-  TargetResult result;
-  result.name = t.name;
-  result.provenance = t.provenance;
-  result.log_transform = t.log_transform;
-  result.value = t.value;
-  result.sigma = t.sigma;
-  result.simulated = untransformed(t, prediction.mean[k]);
-  result.seed_sd = std::sqrt(prediction.variance_of_one[k]);
-  result.parameter_sd = parameter_sd[k];
-  result.sigma_total = total_sigma(t.sigma, prediction.variance[k], 1, 0.0);
-  if (t.holdout && std::isfinite(parameter_sd[k])) {
-    result.sigma_total = std::hypot(result.sigma_total, parameter_sd[k]);
-  }
-  result.residual = (prediction.mean[k] - transformed(t, t.value)) / result.sigma_total;
+  TargetResult result = compared(t, {prediction.mean[k], prediction.variance[k],
+                                     prediction.variance_of_one[k], parameter_sd[k]});
   result.bias = std::isnan(context.bias[k]) ? 0.0 : context.bias[k];
   result.bias_error = context.bias_error[k];
   if (t.holdout) return result;

@@ -42,9 +42,8 @@ std::vector<Eigen::VectorXd> choose_starts(const FitContext& context) {
 // A model that misses its data by many sigma has a chi-square landscape that is as much steeper: what is
 // small beside it is small beside what it means, so the tolerance grows with the reduced chi-square.
 double scaled_tolerance(const FitContext& context) {
-  const double freedom = static_cast<double>(context.summary.num_observations) -
-                         static_cast<double>(context.summary.num_free);
-  const double reduced = context.optimum ? context.optimum->chi_square / std::max(1.0, freedom) : 1.0;
+  const int freedom = std::max(1, degrees_of_freedom(context));
+  const double reduced = context.optimum ? context.optimum->chi_square / freedom : 1.0;
   return context.options.chi_square_tolerance * std::max(1.0, reduced);
 }
 

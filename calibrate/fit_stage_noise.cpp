@@ -107,26 +107,16 @@ Eigen::VectorXd holdout_variance(const FitContext& context, const Eigen::MatrixX
   return moderated_variance(samples, prior);
 }
 
-Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
-                                const Eigen::VectorXd& unit,
-                                const std::vector<std::uint64_t>& seeds) {
-  Eigen::MatrixXd samples(static_cast<Eigen::Index>(context.targets.size()), 0);
-  const Eigen::MatrixXd points = physical_point(context.parameters, unit)
-                                     .replicate(1, static_cast<Eigen::Index>(seeds.size()));
-  for (const Evaluation& run : evaluator.evaluate(points, seeds)) {
-    if (run.status != EvaluationStatus::completed) continue;
-    samples.conservativeResize(Eigen::NoChange, samples.cols() + 1);
-    samples.rightCols(1) = transformed_features(context.targets, run);
-  }
-  return samples;
+Eigen::MatrixXd repeat_optimum(const FitContext& context, Evaluator& evaluator, SeedUse use, int num) {
+  return samples_over_seeds(evaluator, context.parameters, context.targets, context.optimum->unit,
+                            stage_seeds(context.options, use, num));
 }
 
 void run_noise(FitContext& context) {
   if (!context.optimum || context.options.num_noise_seeds < 2) return;
   begin_stage(context.ledger, "noise floor");
-  const Eigen::MatrixXd samples = repeat_on_seeds(
-      context, context.search, context.optimum->unit,
-      stage_seeds(context.options, SeedUse::search, context.options.num_noise_seeds));
+  const Eigen::MatrixXd samples =
+      repeat_optimum(context, context.search, SeedUse::search, context.options.num_noise_seeds);
   context.summary.num_noise_seeds = static_cast<int>(samples.cols());
   if (samples.cols() < 2) {
     context.summary.warnings.emplace_back(

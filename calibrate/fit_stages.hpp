@@ -139,10 +139,8 @@ Eigen::VectorXd holdout_variance(const FitContext& context, const Eigen::MatrixX
 /// Moderated variances: (d0 v_prior + df v) / (d0 + df), d0 = 8, df = runs - 1.
 /// @shape samples (num_targets, num_runs), prior (num_targets)
 Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior);
-/// One point on several seeds, completed runs only. @shape (num_targets, num_completed), T
-Eigen::MatrixXd repeat_on_seeds(FitContext& context, Evaluator& evaluator,
-                                const Eigen::VectorXd& unit,
-                                const std::vector<std::uint64_t>& seeds);
+/// The optimum on `num` seeds of a stage, see samples_over_seeds(). @pre optimum exists
+Eigen::MatrixXd repeat_optimum(const FitContext& context, Evaluator& evaluator, SeedUse use, int num);
 void run_noise(FitContext& context);
 
 // fit_stage_gates.cpp

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tilth {
 
@@ -67,6 +68,23 @@ std::string_view to_string(ParameterVerdict verdict) {
 std::string verdict_words(const FittedParameter& parameter) {
   const std::string word(to_string(parameter.verdict));
   return parameter.limited_by.empty() ? word : fmt::format("{}(by={})", word, parameter.limited_by);
+}
+
+TargetResult compared(const Target& t, const TargetPrediction& p) {
+  TargetResult r;
+  r.name = t.name;
+  r.provenance = t.provenance;
+  r.log_transform = t.log_transform;
+  r.value = t.value;
+  r.sigma = t.sigma;
+  r.simulated = untransformed(t, p.mean);
+  r.seed_sd = std::sqrt(p.variance_of_one);
+  r.parameter_sd = p.parameter_sd;
+  r.sigma_total = total_sigma(t.sigma, p.variance, 1, 0.0);
+  if (t.holdout && std::isfinite(p.parameter_sd))
+    r.sigma_total = std::hypot(r.sigma_total, p.parameter_sd);
+  r.residual = (p.mean - transformed(t, t.value)) / r.sigma_total;
+  return r;
 }
 
 bool FitSummary::is_usable() const {

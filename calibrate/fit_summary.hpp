@@ -98,6 +98,18 @@ struct TargetResult {
   double bias_error = not_known;  ///< T, its standard error; NaN without a confirming simulator
 };
 
+/// What a model says of one target; T.
+struct TargetPrediction {
+  double mean = not_known;
+  double variance = not_known;         ///< of the mean, by packings
+  double variance_of_one = not_known;  ///< of one simulation
+  double parameter_sd = not_known;     ///< NaN: cannot be told, left out
+};
+
+/// A target beside its prediction: everything of TargetResult but reachability, conflicts and bias.
+///   sigma_total^2 = sigma^2 + variance,  + parameter_sd^2 for hold-outs, which took no part in the fit
+TargetResult compared(const Target& target, const TargetPrediction& prediction);
+
 /// Two fitted targets that can each be met, but not both with one parameter set.
 struct TargetConflict {
   std::string first;
@@ -201,7 +213,7 @@ struct FitSummary {
   std::string profile_source;              ///< on what they were drawn, in words
   double profile_level = not_known;        ///< chi-square difference of the 95 % interval
   std::vector<EquivalentSet> equivalence_family;  ///< the optimum first; empty without profiles
-  std::vector<CurveSampleSize> sample_sizes;      ///< empty unless curves were given
+  std::vector<CurveSampleSize> sample_sizes;      ///< filled by who reruns the tests; fit() sees no curves
   Eigen::MatrixXd seed_covariance;           ///< T of the fitted targets, one simulation
 
   int num_bias_rounds = 0;

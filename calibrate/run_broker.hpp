@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "calibrate/run_record.hpp"
@@ -33,8 +34,8 @@ struct BrokerCounts {
 
 /// Rules: a run that is completed or abandoned is never simulated again. Runs of one test setup ride
 /// together in jobs of up to max_members; if such a job crashes or hangs, each of its runs is started
-/// alone, so that a bad one never costs its neighbours; a run that crashes, hangs or gives a number that is not finite
-/// alone has used up one try. Every result is in the store before the next job of that worker is looked at.
+/// alone, so that a bad one never costs its neighbours. A run that crashes or hangs alone, gives a number
+/// that is not finite, or comes back without having been run has used up one try. Every result is in the store before the next job of that worker is looked at.
 /// @thread_safety one thread per object
 class RunBroker {
  public:
@@ -47,9 +48,16 @@ class RunBroker {
   const BrokerCounts& counts() const { return counts_; }
 
  private:
-  struct Job;
+  using Job = std::vector<std::size_t>;  ///< places in the call's list: runs that ride together
+  struct Call;
+  /// Fills the call from the store. @return places of the runs to simulate
+  std::vector<std::size_t> look_up(std::span<const RunIdentity> wanted, Call& call);
   std::vector<Job> plan(const std::vector<std::size_t>& missing,
                         const std::vector<RunRecord>& records) const;
+  void count_try(RunRecord& record, const std::string& reason) const;
+  void take_answer(const JobOutcome& outcome, const Job& job, Call& call) const;
+  /// @return requests of runs that are started again
+  std::vector<std::string> take_outcome(const JobOutcome& outcome, Call& call);
   RunStore& store_;
   WorkerPool& workers_;
   BrokerOptions options_;

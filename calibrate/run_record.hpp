@@ -53,7 +53,9 @@ struct RunRecord {
   std::string key;
   RunIdentity identity;
   RunState state = RunState::candidate;
-  std::string reason;  ///< a sentence for every state but completed
+  /// How it ended, in words. Of a virtual test "<status>: <message>" whether it completed or not, which
+  /// calibrate/cli/test_runs.cpp reads back; a plain sentence where no result came (crash, hang, refusal).
+  std::string reason;
   int num_tries = 0;
   double dt_s = 0.0;
   std::int64_t num_steps = 0;

@@ -137,16 +137,16 @@ VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))");
     }
   }
 
-  std::optional<std::string> stored_state(const std::string& key) {
+  std::optional<RunState> stored_state(const std::string& key) const {
     SQLite::Statement query(db, "SELECT state FROM runs WHERE key = ?");
     query.bind(1, key);
     if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getString();
+    return state_from(query.getColumn(0));
   }
 
   void add_one(const RunRecord& r) {
     const auto before = stored_state(r.key);
-    if (before && state_from(*before) != RunState::failed) {
+    if (before && *before != RunState::failed) {
       SQLite::Statement repeat(db, "UPDATE runs SET num_repeats = num_repeats + 1 WHERE key = ?");
       repeat.bind(1, r.key);
       repeat.exec();
@@ -162,16 +162,17 @@ VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))");
 };
 
 RunStore::RunStore(const std::filesystem::path& file, Mode mode) {
-  if (mode == Mode::read_only && !std::filesystem::exists(file))
+  if (mode != Mode::make && !std::filesystem::exists(file))
     throw ConfigError({fmt::format("{}: there is no such evaluation store", file.string())});
   const int flags = mode == Mode::read_only ? SQLite::OPEN_READONLY
-                                            : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE;
+                    : mode == Mode::make    ? SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE
+                                            : SQLite::OPEN_READWRITE;
   try {
     impl_ = std::make_unique<Impl>(file, flags);
     impl_->db.exec("PRAGMA foreign_keys = ON");
     const int version = impl_->db.execAndGet("PRAGMA user_version").getInt();
     const bool fresh = impl_->db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
-    if (!fresh && version != format_version)
+    if ((!fresh || mode != Mode::make) && version != format_version)
       throw ConfigError({fmt::format("{}: is an SQLite file, but no evaluation store of format {} "
                                      "(its user_version is {})",
                                      file.string(), format_version, version)});
@@ -231,6 +232,14 @@ std::optional<RunRecord> RunStore::find(const std::string& key) const {
   }
 }
 
+bool RunStore::lacks(const std::string& key) const {
+  try {
+    return impl_->stored_state(key).value_or(RunState::failed) == RunState::failed;
+  } catch (const SQLite::Exception& e) {
+    impl_->fail(e);
+  }
+}
+
 void RunStore::add(std::span<const RunRecord> records) {
   try {
     SQLite::Transaction transaction(impl_->db, SQLite::TransactionBehavior::IMMEDIATE);
@@ -256,12 +265,11 @@ std::vector<RunStore::Count> RunStore::counts() const {
   return counts;
 }
 
-std::vector<std::string> RunStore::keys(const std::string& prefix, std::size_t limit) const {
+std::vector<std::string> RunStore::keys(const std::string& prefix) const {
   SQLite::Statement query(impl_->db,
-                          "SELECT key FROM runs WHERE substr(key, 1, ?) = ? ORDER BY rowid LIMIT ?");
+                          "SELECT key FROM runs WHERE substr(key, 1, ?) = ? ORDER BY rowid");
   query.bind(1, static_cast<std::int64_t>(prefix.size()));
   query.bind(2, prefix);
-  query.bind(3, static_cast<std::int64_t>(limit));
   std::vector<std::string> keys;
   while (query.executeStep()) keys.push_back(query.getColumn(0).getString());
   return keys;
@@ -291,8 +299,7 @@ std::size_t RunStore::remove(const Selection& s) {
 std::size_t RunStore::merge(const RunStore& other) {
   std::vector<RunRecord> taken;
   for (const std::string& key : other.keys()) {
-    const auto own = find(key);
-    if (own && own->state != RunState::failed) continue;
+    if (!lacks(key)) continue;
     if (auto record = other.find(key)) taken.push_back(std::move(*record));
   }
   add(taken);

@@ -23,15 +23,20 @@ namespace tilth {
 /// @thread_safety one thread per object
 class RunStore {
  public:
-  enum class Mode { read_only, read_write };
+  enum class Mode {
+    read_only,
+    read_write,  ///< of a file that is there
+    make,        ///< the same, and makes the file if it is not there
+  };
 
-  /// Opens the file; read_write makes it if it is not there.
-  /// @throws ConfigError if it is no store, of another format, absent (read_only), or not writable
-  explicit RunStore(const std::filesystem::path& file, Mode mode = Mode::read_write);
+  /// @throws ConfigError if it is no store, of another format, absent (unless make), or not writable
+  explicit RunStore(const std::filesystem::path& file, Mode mode = Mode::make);
   ~RunStore();
   RunStore(RunStore&&) noexcept;
 
   std::optional<RunRecord> find(const std::string& key) const;
+  /// Not there, or there as failed only: a record of this key would be taken.
+  bool lacks(const std::string& key) const;
   /// @throws std::runtime_error with file and reason (disk full, locked for 60 s); nothing is half-written
   void add(std::span<const RunRecord> records);
 
@@ -43,8 +48,8 @@ class RunStore {
     double wall_s = 0.0;  ///< of all of them
   };
   std::vector<Count> counts() const;
-  /// Keys that begin with `prefix`, in order of entry; at most `limit` of them.
-  std::vector<std::string> keys(const std::string& prefix = "", std::size_t limit = 1'000'000) const;
+  /// Keys that begin with `prefix`, in order of entry.
+  std::vector<std::string> keys(const std::string& prefix = "") const;
   /// Records that were offered although they were there already: simulated twice for nothing.
   std::size_t num_repeats() const;
 
@@ -57,7 +62,7 @@ class RunStore {
   };
   /// @return number of records removed
   std::size_t remove(const Selection& selection);
-  /// Takes over what `other` has and this one has not. @return number of records taken
+  /// Takes over what `other` has and this one lacks. @return number of records taken
   std::size_t merge(const RunStore& other);
 
  private:

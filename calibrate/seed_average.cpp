@@ -13,6 +13,20 @@ Eigen::VectorXd transformed_features(std::span<const Target> targets, const Eval
   return result;
 }
 
+Eigen::MatrixXd samples_over_seeds(Evaluator& evaluator, std::span<const Parameter> parameters,
+                                   std::span<const Target> targets, const Eigen::VectorXd& unit,
+                                   std::span<const std::uint64_t> seeds) {
+  Eigen::MatrixXd samples(static_cast<Eigen::Index>(targets.size()), 0);
+  const Eigen::MatrixXd points =
+      physical_point(parameters, unit).replicate(1, static_cast<Eigen::Index>(seeds.size()));
+  for (const Evaluation& run : evaluator.evaluate(points, seeds)) {
+    if (run.status != EvaluationStatus::completed) continue;
+    samples.conservativeResize(Eigen::NoChange, samples.cols() + 1);
+    samples.rightCols(1) = transformed_features(targets, run);
+  }
+  return samples;
+}
+
 std::vector<std::optional<Eigen::VectorXd>> average_over_seeds(
     Evaluator& evaluator, std::span<const Parameter> parameters, std::span<const Target> targets,
     const Eigen::MatrixXd& unit_points, std::span<const std::uint64_t> seeds) {

@@ -96,6 +96,13 @@ const StateQuantity* SoilData::quantity(std::string_view wanted) const {
   return find_id(state, &StateQuantity::quantity, wanted);
 }
 
+const MeasuredCurve* SoilData::curve(std::string_view test_id, std::string_view condition_id) const {
+  const auto found = std::ranges::find_if(curves, [&](const MeasuredCurve& c) {
+    return c.test_id == test_id && c.condition_id == condition_id;
+  });
+  return found == curves.end() ? nullptr : &*found;
+}
+
 std::size_t num_independent_observations(const std::vector<SoilTarget>& targets) {
   const std::vector<std::string> given = independent_groups(targets);
   return static_cast<std::size_t>(

@@ -156,6 +156,7 @@ struct SoilData {
   const TestCondition* condition(std::string_view condition_id) const;  ///< null when absent
   const SoilParameter* parameter(std::string_view parameter_id) const;  ///< null when absent
   const StateQuantity* quantity(std::string_view quantity) const;       ///< null when absent
+  const MeasuredCurve* curve(std::string_view test_id, std::string_view condition_id) const;  ///< or null
 };
 
 /// Number of independent observations among the targets of the fit (hold-outs do not count).

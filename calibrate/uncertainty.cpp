@@ -31,6 +31,13 @@ bool LinearUncertainty::is_fixed(Eigen::Index j) const {
   return null_share[j] <= max_null_share && null_share[j] <= covariance(j, j);
 }
 
+Eigen::VectorXd propagated_deviation(const Eigen::MatrixXd& jacobian,
+                                     const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd half = jacobian * covariance;
+  const Eigen::ArrayXd variance = half.cwiseProduct(jacobian).rowwise().sum().array();
+  return (variance < 0.0).select(0.0, variance).sqrt();  // rounding of a zero
+}
+
 LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
                                      const Eigen::MatrixXd& residual_covariance,
                                      double relative_limit) {

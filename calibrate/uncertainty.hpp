@@ -27,6 +27,11 @@ struct LinearUncertainty {
   Eigen::MatrixXd gain;        ///< (q, num_residuals), parameters moved by residuals: C = G W G'
 };
 
+/// sqrt(diag(J C J')): standard deviation of predictions due to the parameters; NaN rows stay NaN.
+/// @shape jacobian (num_predictions, q) in the coordinates of the covariance (q, q)
+Eigen::VectorXd propagated_deviation(const Eigen::MatrixXd& jacobian,
+                                     const Eigen::MatrixXd& covariance);
+
 /// Covariance of the least-squares estimate from the Jacobian at the optimum.
 ///
 ///   J = U S V',   C = V_k S_k^-1 (U_k' W U_k) S_k^-1 V_k',   W = covariance of the residuals

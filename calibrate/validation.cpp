@@ -7,60 +7,33 @@
 
 #include "calibrate/secants.hpp"
 #include "calibrate/seed_average.hpp"
+#include "calibrate/uncertainty.hpp"
 
 namespace tilth {
 namespace {
 
-/// T of every target on every completed packing. @shape (num_targets, num_completed)
-Eigen::MatrixXd samples_at(Evaluator& evaluator, const ValidationProblem& problem,
-                           const Eigen::VectorXd& unit) {
-  const Eigen::MatrixXd points =
-      physical_point(problem.parameters, unit).replicate(1, static_cast<Eigen::Index>(problem.seeds.size()));
-  Eigen::MatrixXd samples(static_cast<Eigen::Index>(problem.targets.size()), 0);
-  for (const Evaluation& run : evaluator.evaluate(points, problem.seeds)) {
-    if (run.status != EvaluationStatus::completed) continue;
-    samples.conservativeResize(Eigen::NoChange, samples.cols() + 1);
-    samples.rightCols(1) = transformed_features(problem.targets, run);
-  }
-  return samples;
-}
-
-/// sqrt(diag(J C J')) in T; zero where there is no covariance or the runs around the set failed.
+/// sqrt(diag(J C J')) in T; NaN where there is no covariance or the runs around the set failed.
 Eigen::VectorXd deviation_by_parameters(Evaluator& evaluator, const ValidationProblem& problem,
-                                        const Eigen::VectorXd& unit, bool& known) {
+                                        const Eigen::VectorXd& unit) {
   const auto n = static_cast<Eigen::Index>(problem.targets.size());
-  known = false;
-  if (problem.covariance.size() == 0) return Eigen::VectorXd::Zero(n);
+  if (problem.covariance.size() == 0) return Eigen::VectorXd::Constant(n, not_known);
   const auto secants = paired_secants(
       evaluator, problem.parameters, problem.targets, unit,
       secant_steps(problem.parameters, problem.options.log_step, problem.options.linear_step),
       std::span(problem.seeds).first(1));
-  if (!secants) return Eigen::VectorXd::Zero(n);
+  if (!secants) return Eigen::VectorXd::Constant(n, not_known);
   Eigen::VectorXd inverse_spans(unit.size());
   const std::vector<std::size_t> free = free_parameters(problem.parameters);
   for (std::size_t j = 0; j < free.size(); ++j)
     inverse_spans[static_cast<Eigen::Index>(j)] = 1.0 / coordinate_span(problem.parameters[free[j]]);
-  const Eigen::MatrixXd jacobian = secants->jacobian * inverse_spans.asDiagonal();
-  known = true;
-  return (jacobian * problem.covariance).cwiseProduct(jacobian).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
+  return propagated_deviation(secants->jacobian * inverse_spans.asDiagonal(), problem.covariance);
 }
 
-TargetResult compare(const Target& t, const Eigen::RowVectorXd& values, double parameter_sd) {
-  TargetResult r;
-  r.name = t.name;
-  r.provenance = t.provenance;
-  r.log_transform = t.log_transform;
-  r.value = t.value;
-  r.sigma = t.sigma;
-  const double n = static_cast<double>(values.size());
+TargetPrediction prediction_of(const Eigen::RowVectorXd& values, double parameter_sd) {
+  const auto n = static_cast<double>(values.size());
   const double mean = values.mean();
-  const double variance = (values.array() - mean).square().sum() / std::max(1.0, n - 1);
-  r.simulated = untransformed(t, mean);
-  r.seed_sd = std::sqrt(variance);
-  r.parameter_sd = parameter_sd;
-  r.sigma_total = std::hypot(total_sigma(t.sigma, variance, static_cast<int>(values.size()), 0.0), parameter_sd);
-  r.residual = (mean - transformed(t, t.value)) / r.sigma_total;
-  return r;
+  const double variance = n > 1 ? (values.array() - mean).square().sum() / (n - 1) : not_known;
+  return {mean, n > 1 ? variance / n : 0.0, variance, parameter_sd};
 }
 
 }  // namespace
@@ -77,16 +50,18 @@ Validation validate(const ValidationProblem& problem, const Simulator& simulator
 
   Validation v;
   v.limit = problem.limit;
-  const Eigen::MatrixXd samples = samples_at(evaluator, problem, unit);
+  const Eigen::MatrixXd samples =
+      samples_over_seeds(evaluator, problem.parameters, targets, unit, problem.seeds);
   v.num_seeds = static_cast<int>(samples.cols());
-  const Eigen::VectorXd by_parameters =
-      v.num_seeds > 0 ? deviation_by_parameters(evaluator, problem, unit, v.has_parameter_errors)
-                      : Eigen::VectorXd::Zero(samples.rows());
   double sum = 0.0;
-  for (std::size_t k = 0; k < targets.size() && v.num_seeds > 0; ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    v.targets.push_back(compare(problem.targets[k], samples.row(row), by_parameters[row]));
-    sum += v.targets.back().residual * v.targets.back().residual;
+  if (v.num_seeds > 0) {
+    const Eigen::VectorXd by_parameters = deviation_by_parameters(evaluator, problem, unit);
+    v.has_parameter_errors = by_parameters.array().isFinite().any();
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      v.targets.push_back(compared(targets[k], prediction_of(samples.row(row), by_parameters[row])));
+      sum += v.targets.back().residual * v.targets.back().residual;
+    }
   }
   if (!v.targets.empty()) v.rms = std::sqrt(sum / static_cast<double>(v.targets.size()));
   v.num_simulations = ledger.num_done;

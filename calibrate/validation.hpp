@@ -44,6 +44,8 @@ struct Validation {
 ///   residual = (mean_s T(simulated) - T(value)) / sigma_total,
 ///   sigma_total^2 = sigma^2 + v_seed / num_seeds + diag(J C J')
 ///
+/// What is not known is NaN and left out of sigma_total: v_seed with a single completed packing, the
+/// part of the parameters without a covariance or without the runs around the set.
 /// J by paired secants on the first seed, C the covariance of the fit: the interval of a prediction
 /// holds what the parameters are uncertain by, as for the hold-outs of the fit itself.
 /// @throws what the simulator throws

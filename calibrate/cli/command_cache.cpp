@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <span>
 
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/solver_version.hpp"
@@ -19,6 +21,8 @@
 namespace tilth {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr std::size_t max_shown = 20;
 
 fs::path store_file(const std::string& name) {
   return fs::is_directory(name) ? fs::path(name) / "evaluations.sqlite" : fs::path(name);
@@ -36,9 +40,13 @@ int list(const RunStore& store) {
   return exit_done;
 }
 
+std::string reason_to_show(const RunRecord& r) {
+  return r.state == RunState::completed ? "" : r.reason;
+}
+
 void show_one(const RunRecord& r) {
   std::cout << fmt::format("key {}\n{} {} ({} tries)\n{} under {}, packing {}, {}\n", r.key,
-                           to_string(r.state), r.reason, r.num_tries, r.identity.test,
+                           to_string(r.state), reason_to_show(r), r.num_tries, r.identity.test,
                            r.identity.condition, r.identity.seed, r.identity.solver);
   std::cout << fmt::format("time step {:.6g} s, {} steps, inertial number {:.3g}, {:.3g} s on {}\n",
                            r.dt_s, r.num_steps, r.inertial_number, r.wall_s, r.host);
@@ -49,18 +57,21 @@ void show_one(const RunRecord& r) {
 }
 
 int show(const RunStore& store, const CacheOptions& o) {
-  const std::vector<std::string> keys = store.keys(o.key, o.key.empty() ? 20 : 1000);
+  const std::vector<std::string> keys = store.keys(o.key);
   if (keys.empty()) throw ConfigError({fmt::format("no run whose key begins with '{}'", o.key)});
   if (keys.size() == 1) {
     show_one(*store.find(keys.front()));
     return exit_done;
   }
-  for (const std::string& key : keys) {
+  const std::size_t num_shown = std::min(keys.size(), max_shown);
+  for (const std::string& key : std::span(keys).first(num_shown)) {
     const RunRecord r = *store.find(key);
     std::cout << fmt::format("{} {:<9} {:<22} {:<16} packing {:<6} {}\n", key.substr(0, 12),
                              to_string(r.state), r.identity.test, r.identity.condition,
-                             r.identity.seed, r.state == RunState::completed ? "" : r.reason);
+                             r.identity.seed, reason_to_show(r));
   }
+  std::cout << fmt::format("{} of {} runs shown; --key with the first digits of a key selects\n",
+                           num_shown, keys.size());
   return exit_done;
 }
 
@@ -80,14 +91,13 @@ std::size_t take_message(RunStore& store, const fs::path& file) {
   for (RunRecord& r : read_answer(text)) {
     if (r.key != run_key(r.identity))
       throw ConfigError({fmt::format("{}: the key {} is not that of its content", file.string(), r.key)});
-    if (r.state != RunState::candidate && !store.find(r.key)) taken.push_back(std::move(r));
+    if (r.state != RunState::candidate && store.lacks(r.key)) taken.push_back(std::move(r));
   }
   store.add(taken);
   return taken.size();
 }
 
 int merge(RunStore& store, const CacheOptions& o) {
-  if (o.others.empty()) throw ConfigError({"cache merge: name what shall be taken over"});
   for (const std::string& name : o.others) {
     std::size_t n = 0;
     try {
@@ -118,8 +128,12 @@ void add_cache_options(CLI::App& command, CacheOptions& o) {
 }
 
 int run_cache(const CacheOptions& o) {
-  const bool writes = o.action == "remove" || o.action == "merge";
-  RunStore store(store_file(o.store), writes ? RunStore::Mode::read_write : RunStore::Mode::read_only);
+  using enum RunStore::Mode;
+  if (o.action == "merge" && o.others.empty())
+    throw ConfigError({"cache merge: name what shall be taken over"});
+  RunStore store(store_file(o.store), o.action == "merge"    ? make
+                                      : o.action == "remove" ? read_write
+                                                             : read_only);
   if (o.action == "ls") return list(store);
   if (o.action == "show") return show(store, o);
   if (o.action == "remove") return remove(store, o);

@@ -18,10 +18,7 @@
 #include "calibrate/cli/fit_output.hpp"
 #include "calibrate/cli/profile_output.hpp"
 #include "calibrate/cli/progress_display.hpp"
-#include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
-#include "calibrate/cli/soil_choice.hpp"
-#include "calibrate/config_error.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/fit_report.hpp"
 #include "calibrate/soil_fit.hpp"
@@ -72,35 +69,30 @@ void show_ties(const SoilData& soil, FitSummary& summary) {
   }
 }
 
-void write_results(const FitJob& job, const FitSummary& summary, const FitCardContext& card,
-                   const RunSession& session, const std::filesystem::path& folder,
-                   spdlog::logger& log) {
+void write_card(const FitJob& job, const FitSummary& summary, const FitCardContext& card,
+                const std::filesystem::path& folder) {
   const ReportContext report{card.provenance_sentence +
                              (card.quick ? "\nPREVIEW (--quick): small, fast specimens and few "
                                            "packings; do not publish these numbers"
                                          : "")};
   write_file(folder / "fit.json", fit_card_json(job.soil, summary, card));
   write_file(folder / "fit_report.txt", fit_report_text(summary, report));
+}
+
+/// The card is written before the tests are run once more, and again with what they add to it.
+void write_results(const FitJob& job, FitSummary& summary, const FitCardContext& card,
+                   const RunSession& session, const std::filesystem::path& folder,
+                   spdlog::logger& log) {
+  write_card(job, summary, card, folder);
   for (const std::string& sentence : write_profiles(job.soil, summary, folder)) log.warn(sentence);
   if (!summary.is_usable() || session.should_stop()) return;
   log.info("drawing curves at the fitted values");
-  for (const std::string& sentence : write_curves_and_figures(
-           job.soil, summary, job.search, job.confirm, job.options.seed + 3000, session.context(),
-           folder))
-    log.warn(sentence);
+  FitCurves curves = write_curves_and_figures(job.soil, summary, job.search, job.confirm,
+                                              job.options.seed + 3000, session.context(), folder);
+  for (const std::string& sentence : curves.missing) log.warn(sentence);
+  summary.sample_sizes = std::move(curves.sample_sizes);
+  if (!summary.sample_sizes.empty()) write_card(job, summary, card, folder);
 }
-
-}  // namespace
-
-void add_fit_options(CLI::App& app, FitCommandOptions& o) {
-  add_job_options(app, o.job);
-  app.add_option("--max-runs", o.max_runs,
-                 "end after this many runs (parameter sets times packings), those of the store included")
-      ->check(CLI::PositiveNumber);
-  add_session_options(app, o.session);
-}
-
-namespace {
 
 std::string reproducing_command(const FitCommandOptions& o) {
   return job_command(o.job) + (o.max_runs > 0 ? fmt::format(" --max-runs {}", o.max_runs) : "");
@@ -115,6 +107,14 @@ void say_end(const RunSession& session, spdlog::logger& log) {
 }
 
 }  // namespace
+
+void add_fit_options(CLI::App& app, FitCommandOptions& o) {
+  add_job_options(app, o.job);
+  app.add_option("--max-runs", o.max_runs,
+                 "end after this many runs (parameter sets times packings), those of the store included")
+      ->check(CLI::PositiveNumber);
+  add_session_options(app, o.session);
+}
 
 int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   // 1. read and check everything, then open the folder

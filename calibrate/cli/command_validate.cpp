@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "calibrate/cli/dem_problem.hpp"
@@ -36,18 +37,22 @@ std::vector<Parameter> fitted_parameters(const SoilData& soil, const FittedUncer
   return parameters;
 }
 
+std::string known_number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.3g}", value); }
+
 std::string report_text(const Validation& v, const FittedUncertainty& fit, const std::string& provenance) {
   std::string text = fmt::format("{}\n{}fit: {}\ncriterion: {}\nfound: rms residual {:.3g}, pass mark {:.3g}: {}\n\n",
                                  provenance, fit.preview ? "PREVIEW: the fit was made with --quick\n" : "",
                                  fit.soil_id, fit.criterion, v.rms, v.limit, v.passed() ? "passed" : "failed");
   if (!v.has_parameter_errors)
     text += "the intervals hold no part of the parameters: no covariance in the fit, or the runs around it failed\n";
+  if (v.num_seeds == 1)
+    text += "the intervals hold no part of the packings: only one completed\n";
   text += fmt::format("{:<72} {:>12} {:>9} {:>12} {:>10} {:>10} {:>9}  {}\n", "target", "value", "sigma", "simulated",
                       "seed sd", "param. sd", "residual", "provenance");
   for (const TargetResult& t : v.targets)
-    text += fmt::format("{:<72} {:>12.5g} {:>9.3g} {:>12.5g} {:>10.3g} {:>10.3g} {:>+9.2f}  {}{}\n", t.name, t.value,
-                        t.sigma, t.simulated, t.seed_sd, t.parameter_sd, t.residual, to_string(t.provenance),
-                        t.log_transform ? " (sigma and sd of ln)" : "");
+    text += fmt::format("{:<72} {:>12.5g} {:>9.3g} {:>12.5g} {:>10} {:>10} {:>+9.2f}  {}{}\n", t.name, t.value,
+                        t.sigma, t.simulated, known_number(t.seed_sd), known_number(t.parameter_sd), t.residual,
+                        to_string(t.provenance), t.log_transform ? " (sigma and sd of ln)" : "");
   text += fmt::format("\n{} packings, {} simulations, {} failed\n", v.num_seeds, v.num_simulations, v.failures.size());
   for (const FailedRun& f : v.failures) text += fmt::format("failed: packing {}: {}\n", f.seed, f.message);
   return text;

@@ -143,6 +143,13 @@ Json responses_json(const SoilData& soil, const FitSummary& summary) {
   return list;
 }
 
+Json sample_sizes_json(const FitSummary& s) {
+  Json list = Json::array();
+  for (const CurveSampleSize& c : s.sample_sizes)
+    list.push_back({{"curve", c.curve}, {"num_points", c.num_points}, {"effective", json_number(c.effective)}});
+  return list;
+}
+
 Json matrix_json(const Eigen::MatrixXd& m) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < m.rows(); ++i) {
@@ -252,7 +259,8 @@ std::string fit_card_json(const SoilData& soil, const FitSummary& s, const FitCa
                                           ? "rescaled by reduced chi-square"
                                           : "absolute"},
                             {"num_starts", s.num_starts},
-                            {"num_starts_at_best", s.num_starts_at_best}};
+                            {"num_starts_at_best", s.num_starts_at_best},
+                            {"effective_sample_sizes", sample_sizes_json(s)}};
   card["validation"] = holdout_json(s, c.criterion);
   card["scope"] = scope_json(material, c);
   card["gates"] = gates_json(s);

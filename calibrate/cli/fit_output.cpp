@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <variant>
 
+#include "calibrate/cli/curve_sample_sizes.hpp"
 #include "calibrate/cli/figures.hpp"
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/triaxial_figures.hpp"
@@ -71,7 +73,7 @@ std::string kind_of(const Rerun& run, Fidelity first) {
 
 /// Every condition of a triaxial series has figures of its own, with its measured curve.
 void draw_triaxial_tests(const SoilData& soil, const std::vector<Rerun>& runs,
-                         const std::filesystem::path& folder, std::vector<std::string>& missing) {
+                         const std::filesystem::path& folder, FitCurves& out) {
   for (const TestCondition& condition : soil.conditions) {
     const auto pressure = condition.number("cell_pressure_Pa");
     if (!pressure) continue;
@@ -84,13 +86,16 @@ void draw_triaxial_tests(const SoilData& soil, const std::vector<Rerun>& runs,
           simulated.push_back({kind_of(r, runs.front().fidelity),
                                r.fidelity == runs.front().fidelity ? 1 : 0, c});
     if (simulated.empty()) continue;
+    if (const MeasuredCurve* measured = soil.curve("drained_triaxial", condition.id))
+      std::ranges::copy(curve_sample_sizes(*measured, simulated.front().curve),
+                        std::back_inserter(out.sample_sizes));
     const bool holdout = std::ranges::any_of(soil.targets, [&](const SoilTarget& t) {
       return t.condition_id == condition.id && t.holdout;
     });
     for (const std::string& why :
          draw_triaxial(soil, condition.id, holdout, simulated,
                        folder / "figures" / ("drained_triaxial_" + condition.id)))
-      missing.push_back(why);
+      out.missing.push_back(why);
   }
 }
 
@@ -144,32 +149,30 @@ CurveStyle curve_style(const std::string& test_id) {
   return {"axial strain (%)", "axial stress (kPa)", 0, 1, 1e2, 1e-3};
 }
 
-std::vector<std::string> write_curves_and_figures(const SoilData& soil, const FitSummary& summary,
-                                                  Fidelity search, Fidelity confirm,
-                                                  std::uint64_t first_seed,
-                                                  const RunContext& context,
-                                                  const std::filesystem::path& folder) {
-  std::vector<std::string> missing;
+FitCurves write_curves_and_figures(const SoilData& soil, const FitSummary& summary, Fidelity search,
+                                   Fidelity confirm, std::uint64_t first_seed,
+                                   const RunContext& context, const std::filesystem::path& folder) {
+  FitCurves out;
   const std::vector<Rerun> runs = reruns(soil, material_of(soil, summary.values()), search, confirm,
                                          first_seed, context);
   for (const Rerun& r : runs) {
     const std::string stem = fmt::format("{}_{}_{}_seed{}", test_id(r.test.config),
                                          r.test.condition_id, name_of(r.fidelity), r.seed);
     if (r.result.status != RunStatus::completed)
-      missing.push_back(fmt::format("no curve {}: {}", stem, r.result.message));
+      out.missing.push_back(fmt::format("no curve {}: {}", stem, r.result.message));
     for (const Curve& curve : r.result.curves)
       write_file(folder / "curves" / fmt::format("{}_{}.csv", stem, curve.name), curve_csv(curve));
   }
-  draw_tests(soil, runs, folder, missing);
-  draw_triaxial_tests(soil, runs, folder, missing);
+  draw_tests(soil, runs, folder, out.missing);
+  draw_triaxial_tests(soil, runs, folder, out);
   std::vector<TargetRow> rows;
   for (const TargetResult& t : summary.targets) rows.push_back(target_row(t, false));
   for (const TargetResult& t : summary.holdouts) rows.push_back(target_row(t, true));
   const std::string why = draw_targets(fmt::format("{}: targets against simulation\n{}", soil.name,
                                                    provenance_sentence(soil)),
                                        rows, folder / "figures" / "targets.svg");
-  if (!why.empty()) missing.push_back("no figure targets.svg: " + why);
-  return missing;
+  if (!why.empty()) out.missing.push_back("no figure targets.svg: " + why);
+  return out;
 }
 
 }  // namespace tilth

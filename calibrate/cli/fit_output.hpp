@@ -12,14 +12,16 @@
 
 namespace tilth {
 
+struct FitCurves {
+  std::vector<std::string> missing;           ///< and why, one sentence each
+  std::vector<CurveSampleSize> sample_sizes;  ///< of measured curves beside the first rerun
+};
+
 /// Runs every planned test once more at the fitted values (search size on two packings, confirming
 /// size on one; seeds no stage of the fit has used) and writes curves/*.csv and figures/*.svg.
-/// @return what is missing and why, one sentence each
-std::vector<std::string> write_curves_and_figures(const SoilData& soil, const FitSummary& summary,
-                                                  Fidelity search, Fidelity confirm,
-                                                  std::uint64_t first_seed,
-                                                  const RunContext& context,
-                                                  const std::filesystem::path& folder);
+FitCurves write_curves_and_figures(const SoilData& soil, const FitSummary& summary, Fidelity search,
+                                   Fidelity confirm, std::uint64_t first_seed,
+                                   const RunContext& context, const std::filesystem::path& folder);
 
 /// How one kind of curve is drawn: which columns, in which human units.
 struct CurveStyle {

@@ -22,7 +22,7 @@ std::string number(const Json& value, const char* digits = "{:.4g}") {
 }
 
 std::string number_at(const Json& object, const char* key, const char* digits = "{:.4g}") {
-  return object.contains(key) ? number(object[key], digits) : "-";
+  return object.contains(key) ? number(object.at(key), digits) : "-";
 }
 
 std::string text_at(const Json& object, const char* key) {
@@ -44,12 +44,18 @@ Json read(const fs::path& file) {
   return in ? Json::parse(in, nullptr, false) : Json();
 }
 
+/// "bound_limited (by friction)".
+std::string verdict_words(const Json& p) {
+  const std::string by = text_at(p, "limited_by");
+  return by.empty() ? text_at(p, "verdict") : fmt::format("{} (by {})", text_at(p, "verdict"), by);
+}
+
 std::string head(const Json& card) {
-  const Json& soil = card["soil"];
+  const Json& soil = card.at("soil");
   std::string text = fmt::format("<p class=\"share\">{}</p>\n<h1>{}</h1>\n<p>{}</p>\n",
-                                 text_at(card["provenance"], "sentence"), text_at(soil, "name"),
+                                 text_at(card.at("provenance"), "sentence"), text_at(soil, "name"),
                                  text_at(soil, "site"));
-  if (card["engine"].value("preview", false))
+  if (card.at("engine").value("preview", false))
     text += "<p class=\"warn\">PREVIEW (--quick): small, fast specimens and few packings; do not publish these numbers</p>\n";
   return text + fmt::format("<p><b>{}</b>: {}</p>\n"
                             "<nav><a href=\"#fit\">fit</a><a href=\"#targets\">targets</a><a href=\"#known\">how well known</a>"
@@ -62,13 +68,12 @@ std::string fit_section(const Json& card) {
   HtmlTable table{{"parameter", "value", "standard error", "linear 95 %", "profile 95 %", "from targets",
                    "from packings", "verdict"}, {}};
   HtmlTable held{{"held parameter", "value", ""}, {}};
-  for (const Json& p : card["parameters"]) {
+  for (const Json& p : card.at("parameters")) {
     if (!p.contains("verdict")) {
       held.rows.push_back({text_at(p, "name"), number_at(p, "value", "{:.6g}"),
                            p.contains("tied_to") ? "= " + text_at(p, "tied_to") : text_at(p, "role")});
       continue;
     }
-    const std::string verdict = text_at(p, "verdict");
     const std::string why = text_at(p, "no_error_bar_because");
     table.rows.push_back(
         {text_at(p, "name"), number_at(p, "value", "{:.5g}"),
@@ -78,9 +83,9 @@ std::string fit_section(const Json& card) {
          interval(p, "lo95", "hi95"), interval(p, "profile_lo95", "profile_hi95"),
          number_at(p, "standard_error_from_targets", "{:.3g}"),
          number_at(p, "standard_error_from_packings", "{:.3g}"),
-         coloured(verdict, verdict == "identified")});
+         coloured(verdict_words(p), text_at(p, "verdict") == "identified")});
   }
-  const Json& s = card["fit_statistics"];
+  const Json& s = card.at("fit_statistics");
   std::string text = "<h2 id=\"fit\">Fit</h2>\n" + html_table(table);
   text += fmt::format("<p>chi-square {} at the start, {} at the end, {} on packings no stage had seen; {} "
                       "targets, {} free parameters, {} independent observations; sigma: {}; best value found {} times of {} starts.</p>\n",
@@ -93,7 +98,7 @@ std::string fit_section(const Json& card) {
     gates.rows.push_back({text_at(g, "name"), coloured(g.value("passed", false) ? "passed" : "failed", g.value("passed", false)),
                           text_at(g, "words")});
   if (!gates.rows.empty()) text += html_table(gates);
-  for (const Json& w : card["warnings"])
+  for (const Json& w : card.at("warnings"))
     if (w.is_string()) text += "<p class=\"warn\">" + html_escaped(w.get<std::string>()) + "</p>\n";
   return text + "<details><summary>parameters that were held</summary>" + html_table(held) + "</details>\n";
 }
@@ -126,17 +131,19 @@ std::string response_table(const Json& card, bool holdout) {
   Sources sources;
   HtmlTable table{{"target", "target value", "sigma", "simulated", "one packing &plusmn;", "residual",
                    holdout ? "from parameters" : "reachability", "bias of the search", "provenance"}, {}};
-  for (const Json& r : card["responses"]) {
+  for (const Json& r : card.at("responses")) {
     if (r.value("holdout", false) != holdout) continue;
     const std::string ln = r.value("sigma_of", "") == "ln(value)" ? " of ln" : "";
     const std::string word = text_at(r, "reachability");
     std::string reach = holdout ? number_at(r, "parameter_sd", "{:.3g}")
                                 : coloured(word, word == "reachable");
-    if (word == "unreachable") reach += fmt::format(" <small>({} sigma)</small>", number_at(r, "reach_gap", "{:.2g}"));
-    if (const std::string other = text_at(r, "conflicts_with"); !other.empty())
+    const std::string other = text_at(r, "conflicts_with");
+    if (word == "unreachable" && other.empty())
+      reach += fmt::format(" <small>({} sigma)</small>", number_at(r, "reach_gap", "{:.2g}"));
+    if (!other.empty())
       reach += fmt::format("<br><small>not together with {} ({} sigma)</small>", other,
                            number_at(r, "joint_misfit", "{:.2g}"));
-    const double residual = r["residual"].is_number() ? r["residual"].get<double>() : NAN;
+    const double residual = r.at("residual").is_number() ? r.at("residual").get<double>() : NAN;
     table.rows.push_back({breakable(text_at(r, "name")), number_at(r, "target"), number_at(r, "sigma", "{:.3g}") + ln,
                           number_at(r, "sim"), number_at(r, "sim_sd", "{:.3g}") + ln,
                           std::abs(residual) > 2 ? coloured(number_at(r, "residual", "{:+.2f}"), false)
@@ -157,11 +164,11 @@ std::string targets_section(const Json& card, const fs::path& folder) {
 std::string known_section(const Json& card, const fs::path& folder) {
   std::string text = "<h2 id=\"known\">How well the parameters are known</h2>\n";
   std::vector<std::string> names;
-  for (const Json& p : card["parameters"])
+  for (const Json& p : card.at("parameters"))
     if (p.contains("verdict")) names.push_back(p.value("name", ""));
   HtmlTable table{{""}, {}};
   for (const std::string& name : names) table.headings.push_back(html_escaped(name));
-  const Json& c = card["correlation"];
+  const Json& c = card.at("correlation");
   for (std::size_t i = 0; i < c.size() && i < names.size(); ++i) {
     std::vector<std::string> row = {html_escaped(names[i])};
     for (const Json& value : c[i]) row.push_back(number(value, "{:+.3f}"));
@@ -170,25 +177,25 @@ std::string known_section(const Json& card, const fs::path& folder) {
   if (!table.rows.empty()) text += "<h3>Correlations</h3>\n" + html_table(table);
   for (const char* key : {"null_directions", "near_null_directions"})
     if (card.contains(key))
-      for (const Json& d : card[key])
+      for (const Json& d : card.at(key))
         if (d.is_string()) text += "<p>not fixed by the data: " + html_escaped(d.get<std::string>()) + "</p>\n";
   for (const std::string& name : names)
     if (const fs::path svg = folder / "figures" / ("profile_" + name + ".svg"); fs::exists(svg))
       text += html_figure(svg, "profile of " + name);
   if (card.contains("equivalence_family"))
     text += fmt::format("<p>{} parameter sets fit equally well within the noise; they are in fit.json under equivalence_family.</p>\n",
-                        card["equivalence_family"].size());
+                        card.at("equivalence_family").size());
   return text;
 }
 
 std::string holdout_section(const Json& card) {
-  const Json& v = card["validation"];
+  const Json& v = card.at("validation");
   std::string text = "<h2 id=\"holdout\">Hold-out</h2>\n";
-  if (!v["passed"].is_boolean()) return text + "<p>No target was held out, or none could be predicted.</p>\n";
+  if (!v.at("passed").is_boolean()) return text + "<p>No target was held out, or none could be predicted.</p>\n";
   return text +
          fmt::format("<p>Criterion, written before the fit: {}. Found: {}: {}.</p>\n", text_at(v, "criterion"),
                      number_at(v, "rms_residual", "{:.3g}"),
-                     v["passed"].get<bool>() ? coloured("passed", true) : coloured("failed", false)) +
+                     v.at("passed").get<bool>() ? coloured("passed", true) : coloured("failed", false)) +
          response_table(card, true);
 }
 
@@ -208,16 +215,16 @@ std::string curves_section(const fs::path& folder) {
 
 std::string failures_section(const Json& card) {
   HtmlTable table{{"stage", "simulator", "packing", "why"}, {}};
-  for (const Json& f : card["failures"])
+  for (const Json& f : card.at("failures"))
     table.rows.push_back({text_at(f, "stage"), text_at(f, "simulator"), number_at(f, "seed", "{:.0f}"), text_at(f, "message")});
   const std::string count = fmt::format("<h2 id=\"failures\">Failures</h2>\n<p>{} of {} simulations failed; none became a number.</p>\n",
-                                        table.rows.size(), number_at(card["cost"], "num_simulations", "{:.0f}"));
+                                        table.rows.size(), number_at(card.at("cost"), "num_simulations", "{:.0f}"));
   return table.rows.empty() ? count : count + html_table(table);
 }
 
 std::string cost_section(const Json& card, const Json& timing) {
   HtmlTable table{{"stage", "completed", "failed"}, {}};
-  for (const Json& s : card["cost"]["stages"])
+  for (const Json& s : card.at("cost").at("stages"))
     table.rows.push_back({text_at(s, "stage"), number_at(s, "completed", "{:.0f}"), number_at(s, "failed", "{:.0f}")});
   std::string text = "<h2 id=\"cost\">What it cost</h2>\n" + html_table(table);
   if (!timing.is_object()) return text;
@@ -229,13 +236,13 @@ std::string cost_section(const Json& card, const Json& timing) {
 
 std::string again_section(const Json& card) {
   HtmlTable inputs{{"input", "SHA-256"}, {}};
-  for (const Json& i : card["inputs"]) inputs.rows.push_back({text_at(i, "path"), "<code>" + text_at(i, "sha256") + "</code>"});
-  const Json& tool = card["tool"];
-  const Json& scope = card["scope"];
+  for (const Json& i : card.at("inputs")) inputs.rows.push_back({text_at(i, "path"), "<code>" + text_at(i, "sha256") + "</code>"});
+  const Json& tool = card.at("tool");
+  const Json& scope = card.at("scope");
   return fmt::format("<h2 id=\"again\">Reproduce</h2>\n<pre>{}</pre>\n<p>{} {} (commit {}), {}; result: {}.</p>\n{}"
                      "<p>Valid for: {}. Not calibrated for: {}.</p>\n",
-                     text_at(card["reproduction"], "command"), text_at(tool, "name"), text_at(tool, "version"),
-                     text_at(tool, "commit"), text_at(tool, "compiler"), text_at(card["reproduction"], "tolerance"),
+                     text_at(card.at("reproduction"), "command"), text_at(tool, "name"), text_at(tool, "version"),
+                     text_at(tool, "commit"), text_at(tool, "compiler"), text_at(card.at("reproduction"), "tolerance"),
                      html_table(inputs), text_at(scope, "valid_for"), text_at(scope, "not_calibrated_for"));
 }
 
@@ -245,7 +252,7 @@ std::string report_page(const fs::path& folder) {
   if (!fs::is_directory(folder))
     throw ConfigError({fmt::format("{}: there is no such run folder", folder.string())});
   const Json card = read(folder / "fit.json");
-  if (!card.is_object() || card.value("schema", "") != "tilth.card/1")
+  if (text_at(card, "schema") != "tilth.card/1")
     throw ConfigError({fmt::format("{}: is missing or no parameter card", (folder / "fit.json").string())});
   try {
     return html_page("Tilth: " + card.at("soil").value("name", ""),

@@ -37,6 +37,23 @@ std::uint64_t seed_in(const std::vector<Field>& fields) {
   return seed ? *std::get<std::uint64_t*>(seed->value) : 0;
 }
 
+struct Ending {
+  RunStatus status = RunStatus::lost;
+  std::string message;
+};
+
+/// RunRecord::reason of a test: "diverged: overlap of 0.4 radii".
+std::string reason_of(const Ending& e) { return std::string(name_of(e.status)) + ": " + e.message; }
+
+/// The way back; lost, in all its words, where no test has written the reason.
+Ending ending_of(const std::string& reason) {
+  const std::size_t colon = reason.find(": ");
+  for (const RunStatus s : {RunStatus::completed, RunStatus::diverged, RunStatus::not_settled})
+    if (colon != std::string::npos && reason.substr(0, colon) == name_of(s))
+      return {s, reason.substr(colon + 2)};
+  return {RunStatus::lost, reason};
+}
+
 /// Runs of equal setups, as places in the list.
 std::vector<std::vector<std::size_t>> groups_of(std::span<const TestRun> runs) {
   std::vector<std::string> setups;
@@ -111,7 +128,7 @@ RunRecord record_of(const ExperimentResult& r) {
   record.state = r.status == RunStatus::completed ? RunState::completed
                  : r.status == RunStatus::stopped ? RunState::candidate
                                                   : RunState::abandoned;
-  record.reason = std::string(name_of(r.status)) + ": " + r.message;
+  record.reason = reason_of({r.status, r.message});
   record.dt_s = r.dt_s;
   record.num_steps = r.num_steps;
   record.inertial_number = r.inertial_number;
@@ -128,15 +145,10 @@ ExperimentResult result_of(const RunRecord& record) {
   r.inertial_number = record.inertial_number;
   for (const NamedTable& c : record.curves) r.curves.push_back({c.name, c.columns, c.rows});
   for (const NamedNumber& f : record.features) r.features.push_back({f.name, f.value});
-  const std::size_t colon = record.reason.find(": ");
-  const std::string word = record.reason.substr(0, colon);
   if (record.state == RunState::completed || record.state == RunState::abandoned) {
-    r.status = RunStatus::lost;
-    for (const RunStatus s : {RunStatus::completed, RunStatus::diverged, RunStatus::not_settled})
-      if (word == name_of(s)) {
-        r.status = s;
-        r.message = record.reason.substr(colon + 2);
-      }
+    Ending ending = ending_of(record.reason);
+    r.status = ending.status;
+    r.message = std::move(ending.message);
   }
   return r;
 }

@@ -4,24 +4,21 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "calibrate/cli/figures.hpp"
 
 namespace tilth {
 namespace {
 
-/// axial strain, q/p, volumetric strain
-Curve plotted(const std::vector<std::vector<double>>& rows) {
+constexpr int measured_color = 5;  // dark grey
+
+}  // namespace
+
+Curve triaxial_curve(const std::vector<std::vector<double>>& rows) {
   Curve curve{"", {"axial_strain", "stress_ratio", "volumetric_strain"}, {}};
   for (const std::vector<double>& row : rows)
     curve.rows.push_back({row[0], 3 * (row[2] - row[3]) / (row[2] + 2 * row[3]), row[1]});
   return curve;
 }
-
-constexpr int measured_color = 5;  // dark grey
-
-}  // namespace
 
 std::vector<std::string> draw_triaxial(const SoilData& soil, const std::string& condition_id,
                                        bool holdout, const std::vector<SimulatedTriaxial>& simulated,
@@ -45,12 +42,9 @@ std::vector<std::string> draw_triaxial(const SoilData& soil, const std::string& 
                      .series = {},
                      .marks = {}};
   for (const SimulatedTriaxial& s : simulated)
-    figure.series.push_back({s.label, s.color, plotted(s.curve.rows)});
-  const auto measured = std::ranges::find_if(soil.curves, [&](const MeasuredCurve& c) {
-    return c.test_id == "drained_triaxial" && c.condition_id == condition_id;
-  });
-  if (measured != soil.curves.end())
-    figure.series.push_back({"measured", measured_color, plotted(measured->rows)});
+    figure.series.push_back({s.label, s.color, triaxial_curve(s.curve.rows)});
+  if (const MeasuredCurve* measured = soil.curve("drained_triaxial", condition_id))
+    figure.series.push_back({"measured", measured_color, triaxial_curve(measured->rows)});
   std::vector<std::string> missing;
   const auto draw = [&](const std::string& what) {
     const std::filesystem::path svg = stem.string() + "_" + what + ".svg";

@@ -12,6 +12,10 @@
 
 namespace tilth {
 
+/// What is drawn and compared of a triaxial curve: axial strain, stress ratio q/p, volumetric strain.
+/// @param rows  with the columns of experiments/triaxial_features.hpp
+Curve triaxial_curve(const std::vector<std::vector<double>>& rows);
+
 /// One simulated curve with the columns of experiments/triaxial_features.hpp.
 struct SimulatedTriaxial {
   std::string label;  ///< for the key: "simulated, confirm specimen"

@@ -310,6 +310,24 @@ TEST_CASE("Fit: the budget ends it with what is known, and is never exceeded", "
   }
 }
 
+TEST_CASE("Fit: stopped before its local search it is no worse than its start, by the final sigmas",
+          "[calibrate][fit]") {
+  std::vector<Parameter> at_the_truth = soil_parameters();
+  for (std::size_t k = 0; k < 3; ++k) at_the_truth[k].start = soil_truth()[static_cast<Eigen::Index>(k)];
+  for (const std::string last_stage : {"noise floor", "search"}) {
+    FitOptions options = small_options();
+    bool stop = false;
+    options.progress = [&](const Progress& p) { stop = p.stage == last_stage; };
+    options.should_stop = [&] { return stop; };
+    const FitSummary summary = fit(at_the_truth, soil_targets(0.05, 1),
+                                   simulator_of(soil_formula, 0.05), nullptr, options);
+    CHECK(summary.termination == Termination::stopped);
+    CHECK(summary.starts.empty());
+    CHECK(summary.num_noise_seeds > 1);
+    CHECK(summary.chi_square <= summary.chi_square_start);
+  }
+}
+
 TEST_CASE("Fit: a stop at any moment leaves a valid summary", "[calibrate][fit]") {
   for (const int batches : {0, 1, 2, 4, 6, 8}) {
     FitOptions options = small_options();

@@ -6,14 +6,14 @@
 #include <limits>
 
 #include "calibrate/fit.hpp"
+#include "tests/calibrate/formula_models.hpp"
 
 using Catch::Matchers::WithinAbs;
 using namespace tilth;
 
 namespace {
 
-const std::vector<Parameter> one_parameter = {
-    {.name = "a", .lower = 0.0, .upper = 10.0, .start = 2.0}};
+const std::vector<Parameter> one_parameter = {test::linear_parameter("a", 0.0, 10.0, 2.0)};
 
 Target target(const std::string& name, double value, bool holdout = false) {
   Target t;

@@ -67,6 +67,7 @@ TEST_CASE("Report: a missing error bar comes with its reason", "[calibrate][repo
       context);
   REQUIRE_THAT(text, Contains("no error bar because no local search was completed"));
   REQUIRE_THAT(text, Contains("not known: there is no covariance"));
+  REQUIRE_THAT(text, Contains("per curve: - (no measured curve was compared)"));
   REQUIRE_THAT(text, !Contains(" nan"));
 }
 
@@ -80,7 +81,8 @@ TEST_CASE("Report: profiles, both parts of the errors, curves and rescaling are 
   REQUIRE_THAT(text, Contains("profiles: 95 % where chi-square rises by 3.841"));
   REQUIRE_THAT(text, Contains("drawn on emulators of the search runs"));
   REQUIRE_THAT(text, Contains("se from targets") && Contains("from packings"));
-  REQUIRE_THAT(text, Contains("effective sample size of shear_10000Pa: 12.2 of 200 points"));
+  REQUIRE_THAT(text, Contains("per curve:\n") &&
+                         Contains("effective sample size of shear_10000Pa: 12.2 of 200 points"));
   REQUIRE_THAT(text, Contains("equivalence family: "));
   summary.sigma_is_rescaled = true;
   summary.sigma_scale = 1.5;

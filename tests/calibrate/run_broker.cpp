@@ -88,6 +88,15 @@ TEST_CASE("Run broker: one that hangs is killed and abandoned, one that is refus
   CHECK(records[2].state == RunState::completed);
 }
 
+TEST_CASE("Run broker: one that always comes back unrun is abandoned after three tries", "[calibrate][broker]") {
+  Laboratory lab("broker_idle");
+  const std::vector<RunRecord> records = lab.broker.run(std::vector{point(0.3), doing("idle")});
+  CHECK(records[0].state == RunState::completed);
+  CHECK(records[1].state == RunState::abandoned);
+  CHECK_THAT(records[1].reason, Contains("without having run it") && Contains("3 tries"));
+  CHECK(lab.store.find(records[1].key)->state == RunState::abandoned);
+}
+
 TEST_CASE("Run broker: a stop leaves what is finished in the store and the rest as candidates",
           "[calibrate][broker]") {
   std::size_t num_ended = 0;

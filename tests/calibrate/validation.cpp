@@ -64,6 +64,10 @@ TEST_CASE("Validation: failed packings are left out and recorded, none left is n
   CHECK(v.num_seeds == 1);
   CHECK(v.failures.size() == 1);
   CHECK_FALSE(v.has_parameter_errors);
+  // one packing has no scatter: not known, which is not zero
+  CHECK(std::isnan(v.targets[0].seed_sd));
+  CHECK(std::isnan(v.targets[0].parameter_sd));
+  CHECK_THAT(v.targets[0].sigma_total, WithinRel(0.1, 1e-12));
   const Validation none = validate(problem, failing(simulator_of(product), [](const auto&) { return true; }));
   CHECK(std::isnan(none.rms));
   CHECK_FALSE(none.passed());

@@ -61,6 +61,7 @@ TEST_CASE("Fit: the same command gives the same card on any threads and lanes", 
   CHECK(json["schema"] == "tilth.card/1");
   CHECK(json["inputs"].size() == 5);
   CHECK(json["responses"].size() == 3);
+  CHECK(json["fit_statistics"]["effective_sample_sizes"].is_array());
   for (const Json& curve : json["profiles"]["curves"]) {
     const std::string name = curve["name"];
     const std::string table = read_text(one / "profiles" / (name + ".csv"));

@@ -100,8 +100,8 @@ ProgramRun run_process(const std::vector<std::string>& arguments, const fs::path
   return finish(start(arguments, folder), folder);
 }
 
-ProgramRun run_and_signal(const std::vector<std::string>& arguments, const fs::path& folder,
-                          const std::string& cue, int signal) {
+ProgramRun run_and_do(const std::vector<std::string>& arguments, const fs::path& folder,
+                      const std::string& cue, const std::function<void(pid_t)>& deed) {
   const pid_t child = start(arguments, folder);
   const auto now = [] { return std::chrono::steady_clock::now(); };
   const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
@@ -109,7 +109,7 @@ ProgramRun run_and_signal(const std::vector<std::string>& arguments, const fs::p
   while (now() < last &&
          soil_test::read_text(folder / "stderr.txt").find(cue) == std::string::npos)
     pause();
-  ::kill(child, signal);
+  deed(child);
   siginfo_t info{};
   while (now() < last && info.si_pid == 0) {
     ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT);
@@ -117,6 +117,11 @@ ProgramRun run_and_signal(const std::vector<std::string>& arguments, const fs::p
   }
   if (info.si_pid == 0) ::kill(child, SIGKILL);
   return finish(child, folder);
+}
+
+ProgramRun run_and_signal(const std::vector<std::string>& arguments, const fs::path& folder,
+                          const std::string& cue, int signal) {
+  return run_and_do(arguments, folder, cue, [signal](pid_t child) { ::kill(child, signal); });
 }
 
 std::string one_test_soil(const TempFolder& folder) {

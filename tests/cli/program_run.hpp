@@ -6,6 +6,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,7 +44,12 @@ ProgramRun run(const std::vector<std::string>& arguments);
 ProgramRun run_process(const std::vector<std::string>& arguments,
                        const std::filesystem::path& folder);
 
-/// The built program, sent `signal` once its standard error holds `cue`; killed after 60 s.
+/// The built program; once its standard error holds `cue`, `deed` is done with its process id. Killed
+/// after 60 s.
+ProgramRun run_and_do(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                      const std::string& cue, const std::function<void(pid_t)>& deed);
+
+/// The same with a signal as the deed.
 ProgramRun run_and_signal(const std::vector<std::string>& arguments,
                           const std::filesystem::path& folder, const std::string& cue, int signal);
 

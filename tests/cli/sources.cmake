@@ -2,6 +2,7 @@
 list(APPEND TILTH_TEST_SOURCES cli/export.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/export_peers.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/bad_input.cpp)
+list(APPEND TILTH_TEST_SOURCES cli/cache_command.cpp cli/curve_sample_sizes.cpp cli/report_command.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/fit_command.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/measured_features.cpp)
 list(APPEND TILTH_TEST_SOURCES cli/program_run.cpp)
