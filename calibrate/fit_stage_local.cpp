@@ -47,12 +47,11 @@ double scaled_tolerance(const FitContext& context) {
   return context.options.chi_square_tolerance * std::max(1.0, reduced);
 }
 
-double step_tolerance(const FitContext& context) {
+// The noise of single runs lets no secant judge a step so much shorter than itself.
+double least_step(const FitContext& context) {
   const FitOptions& o = context.options;
-  if (o.derivatives != DerivativeRule::secants) return o.parameter_tolerance;
-  const Eigen::VectorXd steps =
-      secant_steps(context.parameters, o.log_step, o.linear_step);
-  return std::max(o.parameter_tolerance, o.secant_tolerance * steps.minCoeff());
+  if (o.derivatives != DerivativeRule::secants) return 0.0;
+  return o.secant_tolerance * secant_steps(context.parameters, o.log_step, o.linear_step).minCoeff();
 }
 
 LeastSquaresOptions local_options(FitContext& context) {
@@ -60,7 +59,8 @@ LeastSquaresOptions local_options(FitContext& context) {
   options.max_iterations = context.options.max_iterations;
   options.absolute_tolerance = scaled_tolerance(context);
   options.function_tolerance = context.options.function_tolerance;
-  options.parameter_tolerance = step_tolerance(context);
+  options.parameter_tolerance = context.options.parameter_tolerance;
+  options.least_step = least_step(context);
   options.gradient_tolerance = context.options.gradient_tolerance;
   options.should_stop = [&context] { return is_blocked(context.ledger); };
   return options;

@@ -17,8 +17,8 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 // and thrown again after the solve.
 class ProblemCost : public ceres::CostFunction {
  public:
-  ProblemCost(const LeastSquaresProblem& problem, Eigen::Index num_parameters)
-      : problem_(problem), x_(num_parameters) {
+  ProblemCost(const LeastSquaresProblem& problem, Eigen::Index num_parameters, double least_step)
+      : problem_(problem), least_step_(least_step), x_(num_parameters) {
     set_num_residuals(problem.num_residuals);
     mutable_parameter_block_sizes()->push_back(static_cast<int>(num_parameters));
   }
@@ -39,6 +39,8 @@ class ProblemCost : public ceres::CostFunction {
     return problem_.evaluate(x, r, &j);
   }
   const std::exception_ptr& thrown() const { return thrown_; }
+  /// Was a trial left out because its step was too short?
+  bool ended_by_short_step() const { return short_step_; }
   /// The best point evaluated: Ceres forgets its own after a failure.
   const Eigen::VectorXd& best() const { return best_; }
   double best_sum_of_squares() const { return best_sum_of_squares_; }
@@ -47,6 +49,8 @@ class ProblemCost : public ceres::CostFunction {
   bool evaluate(const double* x, double* residuals, double* jacobian) const {
     if (thrown_) return false;
     x_ = Eigen::Map<const Eigen::VectorXd>(x, x_.size());
+    short_step_ = short_step_ || (jacobian == nullptr && is_short_step());
+    if (short_step_) return false;
     Eigen::VectorXd r(num_residuals());
     Eigen::MatrixXd j(num_residuals(), x_.size());
     if (!problem_.evaluate(x_, r, jacobian != nullptr ? &j : nullptr)) return false;
@@ -56,10 +60,17 @@ class ProblemCost : public ceres::CostFunction {
     }
     Eigen::Map<Eigen::VectorXd>(residuals, r.size()) = r;
     if (jacobian != nullptr) {
+      base_ = x_;
       hold_at_bounds(r, j);
       Eigen::Map<RowMajor>(jacobian, j.rows(), j.cols()) = j;
     }
     return true;
+  }
+
+  bool is_short_step() const {
+    if (least_step_ <= 0.0 || base_.size() == 0) return false;
+    const double step = (x_ - base_).lpNorm<Eigen::Infinity>();
+    return step > 0.0 && step < least_step_;
   }
 
   // A parameter at its bound that descent would push outside is held for this step (Bertsekas
@@ -75,7 +86,10 @@ class ProblemCost : public ceres::CostFunction {
   }
 
   const LeastSquaresProblem& problem_;
+  double least_step_;
   mutable Eigen::VectorXd x_;
+  mutable Eigen::VectorXd base_;  // where steps start from; empty before the first Jacobian
+  mutable bool short_step_ = false;
   mutable Eigen::VectorXd best_;
   mutable double best_sum_of_squares_ = std::numeric_limits<double>::quiet_NaN();
   mutable std::exception_ptr thrown_;
@@ -146,7 +160,7 @@ LeastSquaresResult minimise_with_ceres(const LeastSquaresProblem& problem,
                                        const LeastSquaresOptions& options) {
   LeastSquaresResult result;
   Eigen::VectorXd x = start;
-  ProblemCost cost(problem, start.size());
+  ProblemCost cost(problem, start.size(), options.least_step);
   ceres::Problem::Options ownership;
   ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem solver_problem(ownership);
@@ -165,9 +179,12 @@ LeastSquaresResult minimise_with_ceres(const LeastSquaresProblem& problem,
   if (cost.thrown()) std::rethrow_exception(cost.thrown());
 
   result.usable = !result.history.empty();
-  result.message = watch.stopped() ? "stopped" : summary.message;
+  result.message = watch.stopped()              ? "stopped"
+                   : cost.ended_by_short_step() ? "the next step is too short to be judged"
+                                                : summary.message;
   if (!result.usable) return result;
-  result.converged = !watch.stopped() && (summary.termination_type == ceres::CONVERGENCE ||
+  result.converged = !watch.stopped() && (cost.ended_by_short_step() ||
+                                          summary.termination_type == ceres::CONVERGENCE ||
                                           summary.termination_type == ceres::USER_SUCCESS);
   result.num_iterations = static_cast<int>(result.history.size()) - 1;
   result.x = cost.best();

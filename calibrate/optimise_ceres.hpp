@@ -29,6 +29,10 @@ struct LeastSquaresOptions {
   double function_tolerance = 1e-6;   ///< |change of cost| < this * cost
   double parameter_tolerance = 1e-6;  ///< |step| <= this * (|x| + this)
   double gradient_tolerance = 1e-10;  ///< largest projected gradient component
+  /// A trial nearer than this (largest coordinate difference) to the point its step starts from is not
+  /// evaluated: the search has converged. For functions with noise, which would reject ever shorter
+  /// steps one by one. 0 = off.
+  double least_step = 0.0;
   std::function<bool()> should_stop;  ///< asked after every iteration; may be empty
 };
 

@@ -144,6 +144,7 @@ SoilData read_soil(const std::filesystem::path& folder, const SoilVocabulary& vo
   soil.targets = read_measurements(folder / "measurements.csv", vocabulary, problems);
   soil.parameters = read_parameters(folder / "parameters.csv", vocabulary, problems);
   soil.curves = read_curves(folder / "curves.csv", soil, vocabulary, problems);
+  read_tracers(folder / "tracers.csv", vocabulary, soil, problems);
   check_conditions_of_targets(soil, vocabulary, problems);
   set_superseded_aside(soil);
   add_warnings(soil);

@@ -172,8 +172,8 @@ std::size_t num_free_parameters(const std::vector<SoilParameter>& parameters);
 /// Share of the targets of the fit (hold-outs left out) that are measured, in [0, 1]; 0 for none.
 double measured_share(const std::vector<SoilTarget>& targets);
 
-/// Reads soil.json, conditions.csv, measurements.csv, parameters.csv and, where there is one,
-/// curves.csv of a folder.
+/// Reads soil.json, conditions.csv, measurements.csv, parameters.csv and, where there are such files,
+/// curves.csv and tracers.csv of a folder.
 ///
 /// Rows of lower provenance are superseded: of all rows with the same testId, observableId,
 /// conditionId, xId and x only those of the best provenance stay in `targets`.

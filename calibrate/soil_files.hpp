@@ -36,6 +36,12 @@ std::vector<MeasuredCurve> read_curves(const std::filesystem::path& file, const 
                                        const SoilVocabulary& vocabulary,
                                        std::vector<std::string>& problems);
 
+/// Rows of tracers.csv, where there is one, as targets of the sweep test: tracers of one plot, depth and
+/// offset are a site; each site gets a condition "plot@<depth>m_<offset>m" and three targets, the mean
+/// displacement forward, lateral and vertical with sigma = sqrt(sum sigma_i^2) / n.
+void read_tracers(const std::filesystem::path& file, const SoilVocabulary& vocabulary, SoilData& soil,
+                  std::vector<std::string>& problems);
+
 /// What is wrong with the numbers of one parameter, whichever file they came from.
 /// @param known  its physically possible range; may be null
 std::vector<std::string> parameter_problems(const SoilParameter& parameter,

@@ -59,6 +59,13 @@ SoilVocabulary built_in() {
       {"vane_shear", "vane_strength_Pa", 200.0, 1e6, none},
       {"vane_shear", "residual_vane_strength_Pa", 100.0, 1e6, none},
       {"vane_shear", "rotation_at_peak_rad", 2e-3, 2.0, none},
+      {"sweep_tillage", "forward_displacement_m", -1.0, 10.0, none, {"tracer_depth_m", "tracer_lateral_m"}},
+      {"sweep_tillage", "lateral_displacement_m", -3.0, 3.0, none, {"tracer_depth_m", "tracer_lateral_m"}},
+      {"sweep_tillage", "vertical_displacement_m", -0.5, 0.5, none, {"tracer_depth_m", "tracer_lateral_m"}},
+      {"sweep_tillage", "draught_N", 5.0, 1e5, none},
+      {"sweep_tillage", "furrow_area_m2", 1e-5, 1.0, none},
+      {"sweep_tillage", "ridge_area_m2", 1e-5, 1.0, none},
+      {"sweep_tillage", "disturbed_area_m2", 1e-4, 2.0, none},
   };
   words.parameters = {
       {"bond_modulus_Pa", 0.0, 1e12},
@@ -98,6 +105,11 @@ SoilVocabulary built_in() {
       {"surcharge_stress_Pa", 1.0, 1e6},
       {"vane_diameter_m", 5e-3, 0.3},
       {"vane_height_m", 5e-3, 0.6},
+      {"tool_depth_m", 5e-3, 0.6},
+      {"tool_width_m", 0.02, 3.0},
+      {"rake_angle_rad", 0.05, 1.5},
+      {"tracer_depth_m", 0.0, 1.0, true},
+      {"tracer_lateral_m", -2.0, 2.0, true},
   };
   // Upper bounds of stress let no usual test survive a factor of 1000; the lower ones catch kPa.
   words.curves = {{"drained_triaxial",

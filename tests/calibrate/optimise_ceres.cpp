@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 using Catch::Matchers::WithinAbs;
 using namespace tilth;
@@ -45,6 +46,32 @@ TEST_CASE("Ceres: Rosenbrock's valley is followed to its end", "[calibrate][cere
   // (1 + 1.2)^2 + 100 (1 - 1.44)^2 = 24.2; 1e-12: rounding.
   REQUIRE_THAT(found.sum_of_squares_start, WithinAbs(24.2, 1e-12));
   REQUIRE(found.history.size() == static_cast<std::size_t>(found.num_iterations) + 1);
+}
+
+TEST_CASE("Ceres: a step too short to be judged ends the search without a run", "[calibrate][ceres]") {
+  // A parabola with a step of noise in it: trial points are rejected ever nearer to the last one.
+  int num_trials = 0;
+  LeastSquaresProblem problem;
+  problem.lower = Eigen::VectorXd::Zero(1);
+  problem.upper = Eigen::VectorXd::Ones(1);
+  problem.num_residuals = 1;
+  problem.evaluate = [&](const Eigen::VectorXd& x, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian) {
+    r = Eigen::VectorXd::Constant(1, 2.0 - x[0] + (x[0] == 0.5 ? 0.0 : 1.0));
+    if (jacobian != nullptr) *jacobian = Eigen::MatrixXd::Constant(1, 1, -1.0);
+    else ++num_trials;
+    return true;
+  };
+  LeastSquaresOptions options;
+  options.least_step = 0.01;
+  const LeastSquaresResult found =
+      minimise_with_ceres(problem, Eigen::VectorXd::Constant(1, 0.5), options);
+  CHECK(found.usable);
+  CHECK(found.converged);
+  CHECK(found.x[0] == 0.5);
+  const int with_rule = std::exchange(num_trials, 0);
+  options.least_step = 0.0;
+  minimise_with_ceres(problem, Eigen::VectorXd::Constant(1, 0.5), options);
+  CHECK(with_rule < num_trials);
 }
 
 TEST_CASE("Ceres: a bound is met exactly and the rest is minimised on it", "[calibrate][ceres]") {

@@ -32,7 +32,7 @@ list(
   calibrate/sensitivity_sobol.cpp
   calibrate/sensitivity_study.cpp
   calibrate/sobol_design.cpp
-  calibrate/soil_curves.cpp
+  calibrate/soil_curves.cpp calibrate/soil_tracers.cpp
   calibrate/soil_data_mistakes.cpp
   calibrate/soil_data_rules.cpp
   calibrate/soil_data_shipped.cpp
