@@ -87,7 +87,18 @@ void apply_fidelity(AngleOfReposeConfig& c, Fidelity fidelity) {
   c.wall_speed_over_fall_speed = 375 * size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(SweepTillageConfig& c, Fidelity fidelity) {
+  // Aggregates and a bin of their own: 1000, 1600 and 3100 of them. The tool, its depth and its speed
+  // stay, so that the answer is the same quantity.
+  switch (fidelity) {
+    case Fidelity::preview: c.particle_radius_m = 0.025, c.bin_length_m = 1.1, c.bin_width_m = 0.6; break;
+    case Fidelity::search: c.particle_radius_m = 0.022, c.bin_length_m = 1.1; break;
+    case Fidelity::confirm: c.particle_radius_m = 0.018; break;
+  }
+}
+
 std::vector<std::string> own_problems(const DrainedTriaxialConfig& c) { return problems(c); }
+std::vector<std::string> own_problems(const SweepTillageConfig& c) { return problems(c); }
 std::vector<std::string> own_problems(const auto&) { return {}; }
 
 bool same_values(TestConfig a, TestConfig b) {
@@ -102,7 +113,8 @@ bool same_values(TestConfig a, TestConfig b) {
 /// In the order of TestConfig.
 constexpr const char* ids[] = {"unconfined_compression", "direct_shear",     "confined_compression",
                                "drained_triaxial",       "direct_tension",   "interface_shear",
-                               "cone_penetration",       "vane_shear",       "angle_of_repose"};
+                               "cone_penetration",       "vane_shear",       "angle_of_repose",
+                               "sweep_tillage"};
 static_assert(std::size(ids) == std::variant_size_v<TestConfig>);
 
 /// A default config of every kind, in the order of TestConfig.
@@ -179,6 +191,17 @@ void set_packing_seed(TestConfig& config, std::uint64_t seed) {
   std::visit([seed](auto& c) { c.packing_seed = seed; }, config);
 }
 
+void apply_soil_state(TestConfig& config, const SoilData& soil) {
+  auto* sweep = std::get_if<SweepTillageConfig>(&config);
+  if (!sweep) return;
+  const auto value = [&soil](std::string_view quantity) {
+    const auto found = std::ranges::find(soil.state, quantity, &StateQuantity::quantity);
+    return found == soil.state.end() ? std::nullopt : std::optional<double>(found->value);
+  };
+  if (const auto dry = value("dry_bulk_density_kg_per_m3"))
+    sweep->bulk_density_kg_per_m3 = *dry * (1 + value("water_content_drained").value_or(0.0));
+}
+
 void apply_condition(TestConfig& config, const TestCondition& condition) {
   const std::vector<Field> settings = fields(config);
   for (const ConditionNumbers& given : condition.numbers)
@@ -212,7 +235,8 @@ std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
           [&](const InterfaceShearConfig& c) { return run_interface_shear(members, c, packings, options); },
           [&](const ConePenetrationConfig& c) { return run_cone_penetration(members, c, packings, options); },
           [&](const VaneShearConfig& c) { return run_vane_shear(members, c, packings, options); },
-          [&](const AngleOfReposeConfig& c) { return run_angle_of_repose(members, c, packings, options); }},
+          [&](const AngleOfReposeConfig& c) { return run_angle_of_repose(members, c, packings, options); },
+          [&](const SweepTillageConfig& c) { return run_sweep_tillage(members, c, packings, options); }},
       config);
 }
 

@@ -16,6 +16,7 @@
 #include "experiments/direct_tension.hpp"
 #include "experiments/drained_triaxial.hpp"
 #include "experiments/interface_shear.hpp"
+#include "experiments/sweep_tillage.hpp"
 #include "experiments/unconfined_compression.hpp"
 #include "experiments/vane_shear.hpp"
 
@@ -24,7 +25,7 @@ namespace tilth {
 using TestConfig =
     std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
                  DrainedTriaxialConfig, DirectTensionConfig, InterfaceShearConfig,
-                 ConePenetrationConfig, VaneShearConfig, AngleOfReposeConfig>;
+                 ConePenetrationConfig, VaneShearConfig, AngleOfReposeConfig, SweepTillageConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -54,6 +55,10 @@ std::vector<std::string> problems(TestConfig config);
 bool join_series(TestConfig& series, const TestConfig& other);
 
 void set_packing_seed(TestConfig& config, std::uint64_t seed);
+
+/// Takes what a test of a bed needs from the state of the soil: the bulk density as it lies, dry density
+/// x (1 + water content), where soil.json has both; the dry one where it has no water content.
+void apply_soil_state(TestConfig& config, const SoilData& soil);
 
 /// Takes normal stresses and load stresses of a condition over into the config.
 void apply_condition(TestConfig& config, const TestCondition& condition);
