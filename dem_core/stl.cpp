@@ -55,14 +55,16 @@ Triangles read_ascii(const std::string& bytes) {
   in >> word;
   if (word != "solid" && bytes.size() >= header_bytes)
     throw std::runtime_error(fmt::format(
-        "is neither ASCII STL (begins with 'solid') nor whole binary STL: {} triangles take {} bytes, it "
+        "is neither ASCII STL (begins with 'solid') nor whole binary STL: {} triangles take {} "
+        "bytes, it "
         "has {}; it is cut off in triangle {}, or no STL",
         number_at<std::uint32_t>(bytes, 80),
-        header_bytes + triangle_bytes * std::size_t{number_at<std::uint32_t>(bytes, 80)}, bytes.size(),
-        (bytes.size() - header_bytes) / triangle_bytes));
+        header_bytes + triangle_bytes * std::size_t{number_at<std::uint32_t>(bytes, 80)},
+        bytes.size(), (bytes.size() - header_bytes) / triangle_bytes));
   if (word != "solid")
-    throw std::runtime_error("is neither ASCII STL (begins with 'solid') nor binary STL (its length "
-                             "does not fit its triangle count)");
+    throw std::runtime_error(
+        "is neither ASCII STL (begins with 'solid') nor binary STL (its length "
+        "does not fit its triangle count)");
   while (in >> word) {
     ended = ended || word == "endsolid";
     if (word == "facet" && num_corners % 3 != 0)
@@ -84,11 +86,14 @@ Triangles without_collapsed(const Triangles& all, std::vector<std::string>& repa
   for (std::size_t t = 0; t < all.size(); ++t) {
     const auto& [a, b, c] = all[t];
     if (!a.allFinite() || !b.allFinite() || !c.allFinite())
-      throw std::runtime_error(fmt::format("triangle {} has a corner that is not a finite number", t));
+      throw std::runtime_error(
+          fmt::format("triangle {} has a corner that is not a finite number", t));
     if (a == b || b == c || c == a) continue;
-    const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    const double longest2 =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if (!((b - a).cross(c - a).norm() > 1e-9 * longest2))
-      throw std::runtime_error(fmt::format("triangle {} has no area: its corners lie on one line", t));
+      throw std::runtime_error(
+          fmt::format("triangle {} has no area: its corners lie on one line", t));
     kept.push_back(all[t]);
   }
   if (kept.size() < all.size())

@@ -62,7 +62,8 @@ Window steady_window(std::span<const double> series, std::size_t block) {
   const std::size_t num_blocks = series.size() / block;
   if (num_blocks < fewest_blocks) return {0, series.size()};
   std::vector<double> means;
-  for (std::size_t k = 0; k < num_blocks; ++k) means.push_back(mean_of(series.subspan(k * block, block)));
+  for (std::size_t k = 0; k < num_blocks; ++k)
+    means.push_back(mean_of(series.subspan(k * block, block)));
   const Window w = surest(means, num_blocks / 4);
   return {w.begin * block, w.end == num_blocks ? series.size() : w.end * block};
 }

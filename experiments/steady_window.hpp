@@ -17,13 +17,14 @@ struct Window {
 
 /// The steady part of a series: what a transient at either end spoils is left out.
 ///
-/// Means over `block` entries x_1 .. x_n; the numbers of blocks cut off at the beginning and at the end
-/// minimise
+/// Means over `block` entries x_1 .. x_n; the numbers of blocks cut off at the beginning and at the
+/// end minimise
 ///   sum (x_k - mean)^2 / m^2   over the m blocks left,
-/// the squared standard error of their mean. At most a quarter of the blocks is cut at each end, so that
-/// a drift over all of it is not cut down to its last stretch.
+/// the squared standard error of their mean. At most a quarter of the blocks is cut at each end, so
+/// that a drift over all of it is not cut down to its last stretch.
 /// @param block  entries per mean, >= 1; a series of fewer than 8 blocks is returned whole
-/// @source marginal standard error rule: White, Simulation 69 (1997) 323-334; both ends at once: own choice
+/// @source marginal standard error rule: White, Simulation 69 (1997) 323-334; both ends at once:
+/// own choice
 Window steady_window(std::span<const double> series, std::size_t block);
 
 struct MeanWithError {
@@ -36,10 +37,11 @@ struct MeanWithError {
 ///
 ///   se^2 = s^2 tau / n,   s^2 = sum (x - mean)^2 / (n - tau),   tau = 1 + 2 sum_k rho_k
 ///
-/// with the autocorrelations rho_k summed as Geyer's initial positive sequence, 1 <= tau <= n / 2. For a
-/// first-order autoregression of coefficient phi, tau -> (1 + phi) / (1 - phi). n - tau takes out that the
-/// scatter about the own mean is smaller by the variance of that mean.
-/// @source Geyer, Statistical Science 7 (1992) 473, section 3.3. calibrate/effective_sample_size has the
+/// with the autocorrelations rho_k summed as Geyer's initial positive sequence, 1 <= tau <= n / 2.
+/// For a first-order autoregression of coefficient phi, tau -> (1 + phi) / (1 - phi). n - tau takes
+/// out that the scatter about the own mean is smaller by the variance of that mean.
+/// @source Geyer, Statistical Science 7 (1992) 473, section 3.3. calibrate/effective_sample_size
+/// has the
 ///         same sum; neither room may include the other.
 MeanWithError mean_with_error(std::span<const double> series);
 

@@ -26,7 +26,8 @@ struct Profile {
 
 /// Mean height of the spheres' upper envelope over each cell of y, averaged along the stretch:
 ///   z(x, y) = max over spheres above the point of  z_i + sqrt(r_i^2 - d^2)
-/// taken at points a quarter of a mean diameter apart; points without a sphere count as 0, the floor.
+/// taken at points a quarter of a mean diameter apart; points without a sphere count as 0, the
+/// floor.
 Profile surface_profile(const std::vector<Vec3>& position_m, const std::vector<double>& radius_m,
                         const ProfileFrame& frame);
 

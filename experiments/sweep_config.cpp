@@ -35,8 +35,10 @@ void check_sizes(const SweepTillageConfig& c, const Extent& tool, std::vector<st
   const double tool_width_m = tool.high_m.y() - tool.low_m.y();
   const double reach_m = std::max(tool.high_m.y(), -tool.low_m.y());
   if (2 * reach_m > 0.9 * c.bin_width_m)
-    found.push_back(fmt::format("the tool reaches {:.4g} m to the side: the bin, bin_width_m = {}, has "
-                                "room for {:.4g} m", reach_m, c.bin_width_m, 0.45 * c.bin_width_m));
+    found.push_back(
+        fmt::format("the tool reaches {:.4g} m to the side: the bin, bin_width_m = {}, has "
+                    "room for {:.4g} m",
+                    reach_m, c.bin_width_m, 0.45 * c.bin_width_m));
   if (c.tool_depth_m >= c.bed_depth_m) {
     found.push_back(fmt::format("tool_depth_m = {}: must be below bed_depth_m = {}", c.tool_depth_m,
                                 c.bed_depth_m));
@@ -45,32 +47,36 @@ void check_sizes(const SweepTillageConfig& c, const Extent& tool, std::vector<st
   const struct {
     double limit_m;
     const char* reason;
-  } limits[] = {{tool_width_m / 6, "three diameters across the tool"},
-                {0.5 * c.tool_depth_m, "one diameter between surface and cutting edge"},
-                {0.5 * (c.bed_depth_m - c.tool_depth_m), "one diameter between cutting edge and floor"},
-                {0.25 * (c.bin_width_m - 2 * reach_m), "one diameter between tool and side wall"}};
-  const auto& least = *std::ranges::min_element(limits, {}, [](const auto& l) { return l.limit_m; });
+  } limits[] = {
+      {tool_width_m / 6, "three diameters across the tool"},
+      {0.5 * c.tool_depth_m, "one diameter between surface and cutting edge"},
+      {0.5 * (c.bed_depth_m - c.tool_depth_m), "one diameter between cutting edge and floor"},
+      {0.25 * (c.bin_width_m - 2 * reach_m), "one diameter between tool and side wall"}};
+  const auto& least =
+      *std::ranges::min_element(limits, {}, [](const auto& l) { return l.limit_m; });
   if (least.limit_m > 0 && c.particle_radius_m > least.limit_m)
-    found.push_back(fmt::format("particle_radius_m = {}: too large for this tool and bin, the limit is "
-                                "{:.4g} ({})", c.particle_radius_m, least.limit_m, least.reason));
+    found.push_back(
+        fmt::format("particle_radius_m = {}: too large for this tool and bin, the limit is "
+                    "{:.4g} ({})",
+                    c.particle_radius_m, least.limit_m, least.reason));
 }
 
 void check_bin(const SweepTillageConfig& c, std::vector<std::string>& found) {
   if (const double density = aggregate_density_kg_per_m3(c); density > heaviest_aggregate_kg_per_m3)
-    found.push_back(fmt::format("bulk_density_kg_per_m3 = {} at porosity = {}: needs aggregates of "
-                                "{:.0f} kg/m3, above {:.0f}: impossible for soil",
-                                c.bulk_density_kg_per_m3, c.porosity, density,
-                                heaviest_aggregate_kg_per_m3));
+    found.push_back(
+        fmt::format("bulk_density_kg_per_m3 = {} at porosity = {}: needs aggregates of "
+                    "{:.0f} kg/m3, above {:.0f}: impossible for soil",
+                    c.bulk_density_kg_per_m3, c.porosity, density, heaviest_aggregate_kg_per_m3));
   constexpr int most = 2'000'000;
   if (const int n = num_aggregates(c); n < 50 || n > most)
     found.push_back(fmt::format("particle_radius_m = {}: gives {} aggregates, must be 50 to {}",
                                 c.particle_radius_m, n, most));
   const SweepStretch stretch(c);
   if (!(stretch.tracers_to_m > stretch.steady_from_m))
-    found.push_back(fmt::format("bin_length_m = {}: too short for a steady stretch, needs more than "
-                                "{:.4g} for this tool, depth and end_clearance_m",
-                                c.bin_length_m,
-                                c.bin_length_m + stretch.steady_from_m - stretch.tracers_to_m));
+    found.push_back(
+        fmt::format("bin_length_m = {}: too short for a steady stretch, needs more than "
+                    "{:.4g} for this tool, depth and end_clearance_m",
+                    c.bin_length_m, c.bin_length_m + stretch.steady_from_m - stretch.tracers_to_m));
 }
 
 void check_tracers(const SweepTillageConfig& c, std::vector<std::string>& found) {
@@ -78,12 +84,15 @@ void check_tracers(const SweepTillageConfig& c, std::vector<std::string>& found)
     found.push_back("tracer_depth_m and tracer_lateral_m need one entry at least");
   for (const double d : c.tracer_depth_m)
     if (!(d <= c.bed_depth_m))
-      found.push_back(fmt::format("tracer_depth_m = {}: the tracer is outside the bin, bed_depth_m = {}",
-                                  d, c.bed_depth_m));
+      found.push_back(
+          fmt::format("tracer_depth_m = {}: the tracer is outside the bin, bed_depth_m = {}", d,
+                      c.bed_depth_m));
   for (const double y : c.tracer_lateral_m)
     if (!(std::abs(y) <= 0.5 * c.bin_width_m))
-      found.push_back(fmt::format("tracer_lateral_m = {}: the tracer is outside the bin, which reaches "
-                                  "from {} to {}", y, -0.5 * c.bin_width_m, 0.5 * c.bin_width_m));
+      found.push_back(
+          fmt::format("tracer_lateral_m = {}: the tracer is outside the bin, which reaches "
+                      "from {} to {}",
+                      y, -0.5 * c.bin_width_m, 0.5 * c.bin_width_m));
 }
 
 }  // namespace

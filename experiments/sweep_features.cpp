@@ -23,7 +23,8 @@ std::vector<double> column_of(const Curve& curve, std::size_t column, Window w) 
   return values;
 }
 
-/// Rows of the forces that are steady: inside the stretch, without what the draught says is transient.
+/// Rows of the forces that are steady: inside the stretch, without what the draught says is
+/// transient.
 Window steady_rows(const Curve& forces, const SweepStretch& stretch) {
   const auto first = std::ranges::find_if(
       forces.rows, [&](const auto& row) { return row[travel] >= stretch.steady_from_m; });
@@ -45,8 +46,8 @@ void add_forces(const Curve& forces, Window w, ExperimentResult& r) {
   r.features.push_back({"steady_begin_m", forces.rows[w.begin][travel]});
   r.features.push_back({"steady_end_m", forces.rows[w.end - 1][travel]});
   r.features.push_back({"tool_contacts", mean_with_error(column_of(forces, contacts, w)).mean});
-  r.features.push_back({"contact_density_per_m2",
-                        mean_with_error(column_of(forces, contact_density, w)).mean});
+  r.features.push_back(
+      {"contact_density_per_m2", mean_with_error(column_of(forces, contact_density, w)).mean});
 }
 
 void add_tracer_features(const std::vector<TracerMean>& means, ExperimentResult& r) {
@@ -90,8 +91,9 @@ void add_tracers(const SweepRecord& record, double steady_begin_m, ExperimentRes
                  "vertical_m", "forward_sd_m", "lateral_sd_m", "vertical_sd_m"},
                 {}};
   for (const TracerMean& m : means)
-    summary.rows.push_back({m.depth_m, m.lateral_m, static_cast<double>(m.num_tracers), m.mean_m.x(),
-                            m.mean_m.y(), m.mean_m.z(), m.sd_m.x(), m.sd_m.y(), m.sd_m.z()});
+    summary.rows.push_back({m.depth_m, m.lateral_m, static_cast<double>(m.num_tracers),
+                            m.mean_m.x(), m.mean_m.y(), m.mean_m.z(), m.sd_m.x(), m.sd_m.y(),
+                            m.sd_m.z()});
   add_tracer_features(means, r);
   r.curves.push_back(std::move(each));
   r.curves.push_back(std::move(summary));

@@ -10,8 +10,8 @@ namespace tilth {
 /// What a lane of sweep_tillage leaves behind.
 struct SweepRecord {
   double surface_m = 0.0;
-  std::vector<Vec3> settled_m;   ///< before the tool came
-  std::vector<Vec3> at_rest_m;   ///< after it has gone
+  std::vector<Vec3> settled_m;  ///< before the tool came
+  std::vector<Vec3> at_rest_m;  ///< after it has gone
   std::vector<Tracer> tracers;
 };
 

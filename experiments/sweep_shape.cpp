@@ -14,10 +14,14 @@ namespace tilth {
 namespace {
 
 /// Thickness along the vertical.
-double vertical_thickness_m(const SweepShape& s) { return s.thickness_m / std::cos(s.rake_angle_rad); }
+double vertical_thickness_m(const SweepShape& s) {
+  return s.thickness_m / std::cos(s.rake_angle_rad);
+}
 
 /// How far the cutting edge has gone back at a distance y from the middle.
-double setback_m(const SweepShape& s, double y_m) { return y_m / std::tan(0.5 * s.sweep_angle_rad); }
+double setback_m(const SweepShape& s, double y_m) {
+  return y_m / std::tan(0.5 * s.sweep_angle_rad);
+}
 
 /// Room for the shank along the travel: from the nose's flanks to the trailing edges.
 double shank_room_m(const SweepShape& s) {
@@ -116,8 +120,8 @@ std::vector<std::string> problems(const SweepShape& s) {
           fmt::format("sweep_angle_rad = {}: must be between 0 and pi", s.sweep_angle_rad));
   require(s.rake_angle_rad > 0 && s.rake_angle_rad < 0.5 * std::numbers::pi,
           fmt::format("rake_angle_rad = {}: must be between 0 and pi/2", s.rake_angle_rad));
-  for (const double length_m : {s.width_m, s.wing_height_m, s.thickness_m, s.shank_width_m,
-                                s.shank_length_m})
+  for (const double length_m :
+       {s.width_m, s.wing_height_m, s.thickness_m, s.shank_width_m, s.shank_length_m})
     require(length_m > 0, fmt::format("a length of the sweep is {}: must be > 0", length_m));
   if (!found.empty()) return found;
   require(s.wing_height_m > 1.05 * vertical_thickness_m(s),
@@ -126,17 +130,19 @@ std::vector<std::string> problems(const SweepShape& s) {
   require(s.shank_width_m < s.width_m,
           fmt::format("shank_width_m = {}: must be below the sweep's width {}", s.shank_width_m,
                       s.width_m));
-  require(s.shank_length_m < 0.95 * shank_room_m(s),
-          fmt::format("shank_length_m = {}: the share has room for {:.4g} behind the nose's flanks; "
-                      "raise wing_height_m or make the shank smaller",
-                      s.shank_length_m, std::max(0.95 * shank_room_m(s), 0.0)));
+  require(
+      s.shank_length_m < 0.95 * shank_room_m(s),
+      fmt::format("shank_length_m = {}: the share has room for {:.4g} behind the nose's flanks; "
+                  "raise wing_height_m or make the shank smaller",
+                  s.shank_length_m, std::max(0.95 * shank_room_m(s), 0.0)));
   return found;
 }
 
 Mesh sweep_mesh(const SweepShape& shape, double top_m) {
   const HalfSweep half(shape, top_m);
   std::vector<std::array<Vec3, 3>> all = half.triangles();
-  for (const auto& [a, b, c] : half.triangles()) all.push_back({mirrored(a), mirrored(c), mirrored(b)});
+  for (const auto& [a, b, c] : half.triangles())
+    all.push_back({mirrored(a), mirrored(c), mirrored(b)});
   return merge_vertices(all);
 }
 

@@ -12,7 +12,8 @@ namespace tilth {
 struct SweepStretch {
   double tool_length_m = 0.0;  ///< along the travel
   double travel_to_m = 0.0;    ///< the nose stops here: bin length - end clearance
-  /// The whole tool and one depth more is in the bed when the nose is here: forces and tracers from here.
+  /// The whole tool and one depth more is in the bed when the nose is here: forces and tracers from
+  /// here.
   double steady_from_m = 0.0;
   /// Here the tool has left the tracers half a depth behind when it stops.
   double tracers_to_m = 0.0;

@@ -32,7 +32,8 @@ std::vector<Wall> bin_walls(const SweepTillageConfig& c) {
           {.direction = -Vec3::UnitY(), .position_m = -right_m}};
 }
 
-/// Outside the bed, its foremost point a radius before the front wall; the final height comes later.
+/// Outside the bed, its foremost point a radius before the front wall; the final height comes
+/// later.
 Tool waiting_tool(const SweepTillageConfig& c) {
   return {.mesh = tool_mesh(c),
           .position_m = Vec3(-c.particle_radius_m, 0, c.bed_depth_m - c.tool_depth_m)};
@@ -41,8 +42,8 @@ Tool waiting_tool(const SweepTillageConfig& c) {
 Specimen bonded_bed(const SweepTillageConfig& c, Packing packing,
                     std::span<const SoilMaterial> lanes) {
   for (Vec3& x : packing.position_m) x.y() -= 0.5 * c.bin_width_m;
-  Specimen s = make_specimen(packing, lanes, bin_walls(c),
-                             {c.bond_gap_over_radius, {floor_wall}}, {waiting_tool(c)});
+  Specimen s = make_specimen(packing, lanes, bin_walls(c), {c.bond_gap_over_radius, {floor_wall}},
+                             {waiting_tool(c)});
   s.model.gravity_m_per_s2 = -c.gravity_m_per_s2 * Vec3::UnitZ();
   for (int lane = 0; lane < s.model.num_lanes(); ++lane) {
     LaneLaw& law = s.model.lanes[static_cast<std::size_t>(lane)];
@@ -84,9 +85,12 @@ class SweepProtocol {
   void operator()(LaneRun& run, int lane) {
     LaneProgress& p = progress_[static_cast<std::size_t>(lane)];
     switch (p.stage) {
-      case Stage::settle: return settle(run, lane, p);
-      case Stage::travel: return travel(run, lane, p);
-      case Stage::rest: return rest(run, lane, p);
+      case Stage::settle:
+        return settle(run, lane, p);
+      case Stage::travel:
+        return travel(run, lane, p);
+      case Stage::rest:
+        return rest(run, lane, p);
     }
   }
 
@@ -115,10 +119,10 @@ class SweepProtocol {
     SweepRecord& r = p.record;
     r.settled_m = positions_m(run, lane);
     r.surface_m = config_.bed_depth_m - mean_settlement_m(run, r.settled_m);
-    r.tracers = place_tracers({config_.tracer_depth_m, config_.tracer_lateral_m,
-                               config_.tracer_spacing_m, config_.tracer_size_m},
-                              stretch_.steady_from_m, stretch_.tracers_to_m, r.surface_m,
-                              r.settled_m);
+    r.tracers =
+        place_tracers({config_.tracer_depth_m, config_.tracer_lateral_m, config_.tracer_spacing_m,
+                       config_.tracer_size_m},
+                      stretch_.steady_from_m, stretch_.tracers_to_m, r.surface_m, r.settled_m);
     State& state = run.specimen.state;
     const double edge_m = r.surface_m - config_.tool_depth_m;
     state.set_tool_position_m(sweep_tool, lane, Vec3(nose_m(run, lane), 0, edge_m));
@@ -166,9 +170,10 @@ class SweepProtocol {
       show(run, lane, p, SweepMoment::at_rest);
       run.finish(lane, RunStatus::completed, "drawn through, the soil is at rest");
     } else if (run.time_s(lane) - p.stage_start_s > longest_rest_s) {
-      run.finish(lane, RunStatus::not_settled,
-                 fmt::format("the soil still moved {} s after the tool had stopped (agitation {:.3g})",
-                             longest_rest_s, restless));
+      run.finish(
+          lane, RunStatus::not_settled,
+          fmt::format("the soil still moved {} s after the tool had stopped (agitation {:.3g})",
+                      longest_rest_s, restless));
     }
   }
 
@@ -212,8 +217,7 @@ SoilMaterial in_bed(SoilMaterial member, const SweepTillageConfig& config) {
 
 std::vector<ExperimentResult> run_sweep_tillage(std::span<const SoilMaterial> members,
                                                 const SweepTillageConfig& config,
-                                                PackingStore& packings,
-                                                const RunOptions& options) {
+                                                PackingStore& packings, const RunOptions& options) {
   const auto packing = packings.get(packing_spec(config));
   std::vector<SoilMaterial> aggregates;
   for (const SoilMaterial& m : members) aggregates.push_back(in_bed(m, config));

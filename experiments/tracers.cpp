@@ -62,8 +62,7 @@ std::vector<TracerMean> tracer_means(std::span<const Tracer> tracers,
       m.mean_m += displacement_m[end];
     m.num_tracers = static_cast<int>(end - begin);
     m.mean_m /= m.num_tracers;
-    for (std::size_t k = begin; k < end; ++k)
-      m.sd_m += (displacement_m[k] - m.mean_m).cwiseAbs2();
+    for (std::size_t k = begin; k < end; ++k) m.sd_m += (displacement_m[k] - m.mean_m).cwiseAbs2();
     m.sd_m = (m.sd_m / std::max(m.num_tracers - 1, 1)).cwiseSqrt();
     means.push_back(m);
   }

@@ -24,11 +24,15 @@ WatchedRun watch(const SoilMaterial& material, const SweepTillageConfig& config,
   if (output.vtk) vtk.emplace(output.folder / "vtk" / fmt::format("seed{}", config.packing_seed));
   const SweepObserver observer{output.vtk_interval_m, [&](const SweepFrame& frame) {
                                  if (vtk) vtk->add(frame);
-                                 if (frame.moment == SweepMoment::settled) run.settled = view_of(frame);
-                                 if (frame.moment == SweepMoment::stopped) run.stopped = view_of(frame);
-                                 if (frame.moment == SweepMoment::at_rest) run.at_rest = view_of(frame);
+                                 if (frame.moment == SweepMoment::settled)
+                                   run.settled = view_of(frame);
+                                 if (frame.moment == SweepMoment::stopped)
+                                   run.stopped = view_of(frame);
+                                 if (frame.moment == SweepMoment::at_rest)
+                                   run.at_rest = view_of(frame);
                                }};
-  run.result = watch_sweep_tillage(material, config, context.packings, observer, run_options(context));
+  run.result =
+      watch_sweep_tillage(material, config, context.packings, observer, run_options(context));
   return run;
 }
 

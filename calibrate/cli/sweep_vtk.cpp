@@ -22,7 +22,8 @@ std::vector<double> bonds_left(const Specimen& s) {
 
 BedView view_of(const SweepFrame& frame) {
   const Specimen& s = frame.specimen;
-  BedView view{.radius_m = s.model.radius_m, .tool = s.model.tools.front().mesh,
+  BedView view{.radius_m = s.model.radius_m,
+               .tool = s.model.tools.front().mesh,
                .surface_m = frame.surface_m};
   for (std::size_t i = 0; i < frame.settled_m.size(); ++i) {
     view.position_m.push_back(s.state.position_m(static_cast<int>(i)));
@@ -31,8 +32,7 @@ BedView view_of(const SweepFrame& frame) {
   for (Vec3& v : view.tool.vertex_m)
     v = s.state.tool_position_m(0) + s.state.tool_orientation(0) * v;
   for (const Tracer& t : frame.tracers) {
-    view.tracer_m.push_back(t.site_m +
-                            tracer_displacement_m(t, frame.settled_m, view.position_m));
+    view.tracer_m.push_back(t.site_m + tracer_displacement_m(t, frame.settled_m, view.position_m));
     view.tracer_depth_m.push_back(t.depth_m);
   }
   return view;

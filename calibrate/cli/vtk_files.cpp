@@ -88,7 +88,8 @@ std::string pvd_series(const std::vector<VtkStep>& steps) {
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
       "byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const VtkStep& s : steps)
-    text += fmt::format("<DataSet timestep=\"{:.7g}\" part=\"0\" file=\"{}\"/>\n", s.time_s, s.file);
+    text +=
+        fmt::format("<DataSet timestep=\"{:.7g}\" part=\"0\" file=\"{}\"/>\n", s.time_s, s.file);
   return text + "</Collection>\n</VTKFile>\n";
 }
 

@@ -18,8 +18,8 @@ using Catch::Matchers::Contains;
 namespace {
 
 std::vector<std::string> sweep_command(const std::string& out, std::vector<std::string> more) {
-  std::vector<std::string> all = {"simulate", "--experiment", "sweep_tillage", "--soil", "coarse_sand",
-                                  "--quick", "--out", out};
+  std::vector<std::string> all = {"simulate",    "--experiment", "sweep_tillage", "--soil",
+                                  "coarse_sand", "--quick",      "--out",         out};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -31,7 +31,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 std::size_t times(const std::string& text, const std::string& part) {
   std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
   return count;
 }
 
@@ -40,20 +41,20 @@ std::size_t times(const std::string& text, const std::string& part) {
 TEST_CASE("Program: a sweep leaves curves, pictures and a ParaView series", "[cli][sweep]") {
   const TempFolder folder("sweep");
   const ProgramRun r = run(sweep_command(
-      folder / "run", {"--vtk", "--set", "bin_width_m=0.3", "bin_length_m=0.62", "bed_depth_m=0.09",
-                       "particle_radius_m=0.018", "tool_depth_m=0.05", "speed_m_per_s=2",
-                       "tool_width_m=0.12", "wing_height_m=0.02", "tool_thickness_m=0.004",
-                       "shank_width_m=0.015", "shank_length_m=0.03", "end_clearance_m=0.08",
-                       "tracer_depth_m=0.02,0.04", "tracer_lateral_m=0",
-                       "contact_modulus_Pa=5e5", "bond_modulus_Pa=5e5"}));
+      folder / "run",
+      {"--vtk", "--set", "bin_width_m=0.3", "bin_length_m=0.62", "bed_depth_m=0.09",
+       "particle_radius_m=0.018", "tool_depth_m=0.05", "speed_m_per_s=2", "tool_width_m=0.12",
+       "wing_height_m=0.02", "tool_thickness_m=0.004", "shank_width_m=0.015", "shank_length_m=0.03",
+       "end_clearance_m=0.08", "tracer_depth_m=0.02,0.04", "tracer_lateral_m=0",
+       "contact_modulus_Pa=5e5", "bond_modulus_Pa=5e5"}));
   INFO(r.errors);
   REQUIRE(r.exit_code == exit_done);
   CHECK_THAT(r.output, Contains("draught_N") && Contains("forward_displacement_m@0.02m_0m"));
   const std::filesystem::path run_folder(folder / "run");
   // moist: 1472 (1 + 0.1143), the soil's own state
   CHECK_THAT(text_of(run_folder / "result.json"), Contains("\"bulk_density_kg_per_m3\": 1640.2"));
-  for (const char* curve : {"sweep_forces", "tracers", "tracer_means", "surface_before",
-                            "surface_after", "furrow"})
+  for (const char* curve :
+       {"sweep_forces", "tracers", "tracer_means", "surface_before", "surface_after", "furrow"})
     CHECK(std::filesystem::exists(run_folder / "curves" /
                                   ("sweep_tillage_seed1_" + std::string(curve) + ".csv")));
   const std::filesystem::path vtk = run_folder / "vtk" / "seed1";
@@ -96,7 +97,7 @@ TEST_CASE("vtk: points and triangles stand in the file as they are", "[cli][swee
                          Contains("Name=\"radius_m\" format=\"ascii\">\n0.5\n0.25\n"));
   const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                   {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-  CHECK_THAT(vtp_mesh(mesh), Contains("NumberOfPolys=\"4\"") && Contains("0 2 1 0 1 3 0 3 2 1 2 3") &&
-                                 Contains("3 6 9 12"));
+  CHECK_THAT(vtp_mesh(mesh), Contains("NumberOfPolys=\"4\"") &&
+                                 Contains("0 2 1 0 1 3 0 3 2 1 2 3") && Contains("3 6 9 12"));
   CHECK_THAT(pvd_series({{0.5, "a.vtp"}}), Contains("timestep=\"0.5\" part=\"0\" file=\"a.vtp\""));
 }

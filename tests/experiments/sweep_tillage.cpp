@@ -62,7 +62,8 @@ std::string complaint(const SweepTillageConfig& c) {
 
 }  // namespace
 
-TEST_CASE("sweep: draught pulls back, a symmetric tool is not pushed aside", "[experiments][sweep]") {
+TEST_CASE("sweep: draught pulls back, a symmetric tool is not pushed aside",
+          "[experiments][sweep]") {
   const ExperimentResult& r = base();
   const Curve& forces = r.curves.front();
   CHECK(forces.rows.front()[1] == 0);  // begins outside the bed
@@ -101,7 +102,8 @@ TEST_CASE("sweep: deeper draws harder, faster throws further", "[experiments][sw
   bed.tool_depth_m = 0.09;
   const double deep_N = run(bed).feature("draught_N");
   CAPTURE(deep_N, shallow_N);
-  CHECK(deep_N > 1.2 * shallow_N);  // 1.45, 1.22, 1.35 on three packings; coarse grains on a glued floor
+  CHECK(deep_N >
+        1.2 * shallow_N);  // 1.45, 1.22, 1.35 on three packings; coarse grains on a glued floor
   SweepTillageConfig fast = small_bin();
   fast.speed_m_per_s = 2.4;
   const ExperimentResult thrown = run(fast);
@@ -157,9 +159,9 @@ TEST_CASE("sweep: the bed has the bulk density that was asked for", "[experiment
   const auto packing = packings().get(packing_spec(c));
   double solid_m3 = 0.0;
   for (const double r : packing->radius_m) solid_m3 += 4.0 / 3 * 3.14159265358979 * r * r * r;
-  CHECK_THAT(solid_m3 * aggregate_density_kg_per_m3(c) /
-                 (c.bin_length_m * c.bin_width_m * c.bed_depth_m),
-             WithinRel(1450.0, 1e-9));
+  CHECK_THAT(
+      solid_m3 * aggregate_density_kg_per_m3(c) / (c.bin_length_m * c.bin_width_m * c.bed_depth_m),
+      WithinRel(1450.0, 1e-9));
   // The number is rounded and the radii are drawn: 2 % of scatter for 400 of them.
   CHECK_THAT(packing->mean_radius_m, WithinRel(c.particle_radius_m, 0.02));
 }
@@ -189,11 +191,15 @@ TEST_CASE("sweep: what contradicts itself is refused with the limit", "[experime
              Contains("too large") && Contains("the limit is 0.03"));
   CHECK_THAT(with([](auto& c) { c.sweep.width_m = 0.8; }), Contains("the tool reaches 0.4 m"));
   CHECK_THAT(with([](auto& c) { c.tool_depth_m = 0.2; }), Contains("must be below bed_depth_m"));
-  CHECK_THAT(with([](auto& c) { c.tracer_lateral_m = {0.0, 0.4}; }),
+  CHECK_THAT(with([](auto& c) {
+               c.tracer_lateral_m = {0.0, 0.4};
+             }),
              Contains("tracer_lateral_m = 0.4") && Contains("outside the bin"));
   CHECK_THAT(with([](auto& c) { c.tracer_depth_m = {0.17}; }), Contains("outside the bin"));
-  CHECK_THAT(with([](auto& c) { c.bin_length_m = 0.7; }), Contains("too short for a steady stretch"));
-  CHECK_THAT(with([](auto& c) { c.bulk_density_kg_per_m3 = 2200; }), Contains("impossible for soil"));
+  CHECK_THAT(with([](auto& c) { c.bin_length_m = 0.7; }),
+             Contains("too short for a steady stretch"));
+  CHECK_THAT(with([](auto& c) { c.bulk_density_kg_per_m3 = 2200; }),
+             Contains("impossible for soil"));
   CHECK_THAT(with([](auto& c) { c.sweep.shank_length_m = 0.2; }), Contains("has room for"));
   CHECK_THAT(with([](auto& c) { c.particle_radius_m = 6e-4; }), Contains("aggregates, must be"));
   SweepTillageConfig c;

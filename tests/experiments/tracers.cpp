@@ -29,13 +29,14 @@ std::vector<Vec3> lattice(int nx, int ny, int nz) {
 TEST_CASE("tracers: small cubes follow the nearest aggregate, large ones the mean of those inside",
           "[experiments][tracers]") {
   const std::vector<Vec3> before = lattice(11, 5, 4);
-  TracerGrid grid{.depth_m = {0.011, 0.02}, .lateral_m = {-0.01, 0.0}, .spacing_m = 0.02,
-                  .size_m = 0.005};
+  TracerGrid grid{
+      .depth_m = {0.011, 0.02}, .lateral_m = {-0.01, 0.0}, .spacing_m = 0.02, .size_m = 0.005};
   const auto small = place_tracers(grid, 0.02, 0.06, 0.03, before);
   REQUIRE(small.size() == 2 * 2 * 3);
   CHECK(small.front().site_m == Vec3(0.02, -0.01, 0.03 - 0.011));
   REQUIRE(small.front().particles.size() == 1);
-  CHECK((before[static_cast<std::size_t>(small.front().particles[0])] - Vec3(0.02, -0.01, 0.02)).norm() < 1e-12);
+  CHECK((before[static_cast<std::size_t>(small.front().particles[0])] - Vec3(0.02, -0.01, 0.02))
+            .norm() < 1e-12);
   grid.size_m = 0.0201;
   const auto large = place_tracers(grid, 0.02, 0.06, 0.03, before);
   CHECK(large.back().particles.size() == 27);  // depth 0.02 is on the lattice: 3 x 3 x 3
@@ -47,7 +48,8 @@ TEST_CASE("tracers: small cubes follow the nearest aggregate, large ones the mea
   CHECK(moved.y() == 0);
 }
 
-TEST_CASE("tracers: means and scatter of a row are those of its numbers", "[experiments][tracers]") {
+TEST_CASE("tracers: means and scatter of a row are those of its numbers",
+          "[experiments][tracers]") {
   std::vector<Tracer> tracers(5);
   tracers[3].lateral_m = tracers[4].lateral_m = 0.1;
   const std::vector<Vec3> moved = {{1, 0, 0}, {2, 0, 0}, {6, 0, 3}, {5, 1, 0}, {7, 1, 0}};
