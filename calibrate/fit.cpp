@@ -108,6 +108,20 @@ void set_termination(FitContext& context) {
   }
 }
 
+// chi-square beyond its 1 in 10000 point (Wilson & Hilferty 1931: its cube root is nearly normal).
+void warn_of_misfit(FitContext& context) {
+  FitSummary& summary = context.summary;
+  const double freedom = summary.degrees_of_freedom;
+  if (context.options.rescale_sigma || freedom < 1.0) return;
+  const double part = 2.0 / (9.0 * freedom);
+  if (!(summary.chi_square > freedom * std::pow(1.0 - part + 3.72 * std::sqrt(part), 3.0))) return;
+  summary.warnings.push_back(
+      fmt::format("the model does not fit: reduced chi-square {:.3g}. Error bars and profiles count what noise does to "
+                  "the best values, not what the misfit does: something is missing in model or data before they "
+                  "can be believed",
+                  summary.chi_square / freedom));
+}
+
 void report_counts(FitContext& context) {
   FitSummary& summary = context.summary;
   summary.num_simulations = context.ledger.num_done;
@@ -165,6 +179,7 @@ FitSummary fit(const std::vector<Parameter>& parameters, const std::vector<Targe
   run_stages(context);
   set_termination(context);
   report_counts(context);
+  warn_of_misfit(context);
   return context.summary;
 }
 

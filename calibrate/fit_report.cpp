@@ -53,7 +53,7 @@ void fit_statistics(const FitSummary& s, std::string& text) {
   report_line(text, "# data points         = {} (independent: {})", s.num_observations,
               s.num_independent);
   report_line(text, "# variables           = {}", s.num_free);
-  report_line(text, "chi-square at start   = {}", report_number(s.chi_square_start));
+  report_line(text, "chi-square at start   = {} (one packing)", report_number(s.chi_square_start));
   report_line(text, "chi-square            = {}", report_number(s.chi_square));
   report_line(text, "chi-square, new seeds = {} ({} seeds)", report_number(s.chi_square_fresh),
               s.num_fresh_seeds);

@@ -118,7 +118,7 @@ Eigen::VectorXd FitSummary::values() const {
 std::string FitSummary::brief_report() const {
   if (termination == Termination::not_called) return message;
   return fmt::format(
-      "{}: {} chi-square {:.4g} -> {:.4g} (fresh seeds {:.4g}); {} simulations, {} failed",
+      "{}: {} chi-square {:.4g} (start, one packing) -> {:.4g} (fresh seeds {:.4g}); {} simulations, {} failed",
       to_string(termination), message, chi_square_start, chi_square, chi_square_fresh,
       num_simulations, failures.size());
 }

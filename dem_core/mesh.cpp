@@ -42,19 +42,23 @@ void find_degenerate(const Mesh& mesh, std::vector<std::string>& found) {
 }
 
 void find_open_edges(const Mesh& mesh, std::vector<std::string>& found) {
-  std::map<std::array<std::int32_t, 2>, int> times_seen;
-  for (const auto& t : mesh.triangle)
-    for (std::size_t k = 0; k < 3; ++k) ++times_seen[{t[k], t[(k + 1) % 3]}];
+  std::map<std::array<std::int32_t, 2>, std::vector<std::size_t>> triangles_of;
+  for (std::size_t i = 0; i < mesh.triangle.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles_of[{mesh.triangle[i][k], mesh.triangle[i][(k + 1) % 3]}].push_back(i);
   std::size_t told = 0;
-  for (const auto& [edge, times] : times_seen) {
+  for (const auto& [edge, triangles] : triangles_of) {
     if (told == max_sentences) return;
-    const bool has_twin = times_seen.contains({edge[1], edge[0]});
-    if (times == 1 && has_twin) continue;
-    found.push_back(fmt::format(
-        "edge {} -> {} {}", edge[0], edge[1],
-        times > 1 ? "belongs to two triangles in the same sense: the orientation is not consistent "
-                    "or surfaces touch along it"
-                  : "has a triangle on one side only: the mesh is not closed"));
+    const bool has_twin = triangles_of.contains({edge[1], edge[0]});
+    if (triangles.size() == 1 && has_twin) continue;
+    if (triangles.size() > 1)
+      found.push_back(fmt::format(
+          "edge {} -> {} belongs to the triangles {} and {} in the same sense: the orientation is not "
+          "consistent or surfaces touch along it",
+          edge[0], edge[1], triangles[0], triangles[1]));
+    else
+      found.push_back(fmt::format("edge {} -> {} has a triangle ({}) on one side only: the mesh is not "
+                                  "closed", edge[0], edge[1], triangles[0]));
     ++told;
   }
 }

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -51,9 +53,18 @@ Triangles read_ascii(const std::string& bytes) {
   std::size_t num_corners = 0;
   bool ended = false;
   in >> word;
+  if (word != "solid" && bytes.size() >= header_bytes)
+    throw std::runtime_error(fmt::format(
+        "is neither ASCII STL (begins with 'solid') nor whole binary STL: {} triangles take {} "
+        "bytes, it "
+        "has {}; it is cut off in triangle {}, or no STL",
+        number_at<std::uint32_t>(bytes, 80),
+        header_bytes + triangle_bytes * std::size_t{number_at<std::uint32_t>(bytes, 80)},
+        bytes.size(), (bytes.size() - header_bytes) / triangle_bytes));
   if (word != "solid")
-    throw std::runtime_error("is neither ASCII STL (begins with 'solid') nor binary STL (its length "
-                             "does not fit its triangle count)");
+    throw std::runtime_error(
+        "is neither ASCII STL (begins with 'solid') nor binary STL (its length "
+        "does not fit its triangle count)");
   while (in >> word) {
     ended = ended || word == "endsolid";
     if (word == "facet" && num_corners % 3 != 0)
@@ -69,18 +80,55 @@ Triangles read_ascii(const std::string& bytes) {
   return triangles;
 }
 
+/// Corner coordinates are finite; triangles that are one line or point are left out or refused.
+Triangles without_collapsed(const Triangles& all, std::vector<std::string>& repairs) {
+  Triangles kept;
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    const auto& [a, b, c] = all[t];
+    if (!a.allFinite() || !b.allFinite() || !c.allFinite())
+      throw std::runtime_error(
+          fmt::format("triangle {} has a corner that is not a finite number", t));
+    if (a == b || b == c || c == a) continue;
+    const double longest2 =
+        std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    if (!((b - a).cross(c - a).norm() > 1e-9 * longest2))
+      throw std::runtime_error(
+          fmt::format("triangle {} has no area: its corners lie on one line", t));
+    kept.push_back(all[t]);
+  }
+  if (kept.size() < all.size())
+    repairs.push_back(fmt::format("{} triangles with two corners in one point were left out",
+                                  all.size() - kept.size()));
+  return kept;
+}
+
+/// The triangles as a solid, turned if all of it faces inwards.
+Mesh solid_of(const Triangles& triangles, std::vector<std::string>& repairs) {
+  Mesh mesh = merge_vertices(triangles);
+  std::vector<std::string> found = problems(mesh);
+  if (found.size() == 1 && mesh_volume_m3(mesh) < 0) {
+    for (auto& t : mesh.triangle) std::swap(t[1], t[2]);
+    found = problems(mesh);
+    if (found.empty()) repairs.push_back("all triangles faced inwards and were turned");
+  }
+  if (found.empty()) return mesh;
+  for (const std::string& done : repairs) found.push_back("(" + done + ")");
+  throw std::runtime_error(fmt::format("is no closed solid: {}", fmt::join(found, "; ")));
+}
+
 }  // namespace
 
-Mesh read_stl(const std::filesystem::path& file, double metres_per_unit) {
+Mesh read_stl(const std::filesystem::path& file, double metres_per_unit,
+              std::vector<std::string>* repairs) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error("cannot read " + file.string());
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::vector<std::string> done;
   try {
-    Mesh mesh = merge_vertices(is_binary(bytes) ? read_binary(bytes) : read_ascii(bytes));
+    const Triangles all = is_binary(bytes) ? read_binary(bytes) : read_ascii(bytes);
+    Mesh mesh = solid_of(without_collapsed(all, done), done);
     for (Vec3& v : mesh.vertex_m) v *= metres_per_unit;
-    const std::vector<std::string> found = problems(mesh);
-    if (!found.empty())
-      throw std::runtime_error(fmt::format("is no closed solid: {}", fmt::join(found, "; ")));
+    if (repairs) *repairs = done;
     return mesh;
   } catch (const std::runtime_error& e) {
     throw std::runtime_error(file.string() + " " + e.what());

@@ -23,8 +23,22 @@ bool covers(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& p) {
   return turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
 }
 
-/// Triangles of a simple polygon by cutting off ears.
-std::vector<std::array<Index, 3>> cut_ears(const std::vector<Vec2>& outline) {
+/// Ring of a body of revolution: its vertices, or one vertex on the axis.
+std::vector<Index> add_ring(Mesh& mesh, const ProfilePoint& p, int num_sides) {
+  const double step_rad = 2 * std::numbers::pi / num_sides;
+  const double corner_m = p.radius_m * std::sqrt(step_rad / std::sin(step_rad));
+  std::vector<Index> ring;
+  for (int k = 0; k < (p.radius_m > 0 ? num_sides : 1); ++k) {
+    ring.push_back(static_cast<Index>(mesh.vertex_m.size()));
+    mesh.vertex_m.emplace_back(corner_m * std::cos(k * step_rad), corner_m * std::sin(k * step_rad),
+                               p.height_m);
+  }
+  return ring;
+}
+
+}  // namespace
+
+std::vector<std::array<Index, 3>> triangulate(const std::vector<Vec2>& outline) {
   std::vector<Index> left(outline.size());
   std::iota(left.begin(), left.end(), 0);
   const auto point = [&outline](Index i) { return outline[static_cast<std::size_t>(i)]; };
@@ -41,27 +55,12 @@ std::vector<std::array<Index, 3>> cut_ears(const std::vector<Vec2>& outline) {
       });
       if (empty) ear = k;
     }
-    if (ear == n) throw std::invalid_argument("the outline of a prism crosses itself");
+    if (ear == n) throw std::invalid_argument("the outline of a polygon crosses itself");
     triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
   }
   return triangles;
 }
-
-/// Ring of a body of revolution: its vertices, or one vertex on the axis.
-std::vector<Index> add_ring(Mesh& mesh, const ProfilePoint& p, int num_sides) {
-  const double step_rad = 2 * std::numbers::pi / num_sides;
-  const double corner_m = p.radius_m * std::sqrt(step_rad / std::sin(step_rad));
-  std::vector<Index> ring;
-  for (int k = 0; k < (p.radius_m > 0 ? num_sides : 1); ++k) {
-    ring.push_back(static_cast<Index>(mesh.vertex_m.size()));
-    mesh.vertex_m.emplace_back(corner_m * std::cos(k * step_rad), corner_m * std::sin(k * step_rad),
-                               p.height_m);
-  }
-  return ring;
-}
-
-}  // namespace
 
 Mesh box_mesh(const Vec3& low_m, const Vec3& high_m) {
   return prism_mesh({{low_m.x(), low_m.y()},
@@ -76,7 +75,7 @@ Mesh prism_mesh(const std::vector<Vec2>& outline_m, double low_m, double high_m)
   for (const double z : {low_m, high_m})
     for (const Vec2& p : outline_m) mesh.vertex_m.emplace_back(p.x(), p.y(), z);
   const Index n = static_cast<Index>(outline_m.size());
-  for (const auto& t : cut_ears(outline_m)) {
+  for (const auto& t : triangulate(outline_m)) {
     mesh.triangle.push_back({t[0], t[2], t[1]});
     mesh.triangle.push_back({t[0] + n, t[1] + n, t[2] + n});
   }
@@ -116,6 +115,23 @@ Mesh cone_mesh(double apex_angle_rad, double base_diameter_m, double shaft_diame
   profile.push_back({0.5 * shaft_diameter_m, length_m});
   profile.push_back({0, length_m});
   return revolution_mesh(profile, num_sides);
+}
+
+double area_below_m2(const Mesh& mesh, double level_m) {
+  double area_m2 = 0.0;
+  for (const auto& t : mesh.triangle) {
+    std::vector<Vec3> below;  // the triangle clipped by the plane z = level
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& a = mesh.vertex_m[static_cast<std::size_t>(t[k])];
+      const Vec3& b = mesh.vertex_m[static_cast<std::size_t>(t[(k + 1) % 3])];
+      if (a.z() <= level_m) below.push_back(a);
+      if ((a.z() <= level_m) != (b.z() <= level_m))
+        below.push_back(a + (level_m - a.z()) / (b.z() - a.z()) * (b - a));
+    }
+    for (std::size_t k = 2; k < below.size(); ++k)
+      area_m2 += 0.5 * (below[k - 1] - below[0]).cross(below[k] - below[0]).norm();
+  }
+  return area_m2;
 }
 
 Mesh vane_mesh(double diameter_m, double height_m, double blade_thickness_m) {

@@ -3,6 +3,7 @@
 // Parametric tools as closed triangle meshes, in the body frame; z is up and the axis.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "dem_core/model.hpp"
@@ -11,6 +12,10 @@ namespace tilth {
 
 /// A box between two corners; 12 triangles.
 Mesh box_mesh(const Vec3& low_m, const Vec3& high_m);
+
+/// Triangles of a simple polygon (corners counter-clockwise), by cutting off ears; numbers of corners.
+/// @throws std::invalid_argument for a polygon that crosses itself
+std::vector<std::array<std::int32_t, 3>> triangulate(const std::vector<Eigen::Vector2d>& outline);
 
 /// A prism over a simple polygon (corners counter-clockwise seen from above), from low_m to high_m.
 /// @throws std::invalid_argument for a polygon that crosses itself
@@ -37,5 +42,8 @@ Mesh cone_mesh(double apex_angle_rad, double base_diameter_m, double shaft_diame
 /// A cruciform vane: four blades of the full diameter, height and thickness, its lower end in the
 /// plane z = 0, its axis through the origin.
 Mesh vane_mesh(double diameter_m, double height_m, double blade_thickness_m);
+
+/// Area of the surface below the plane z = level, in the mesh's own frame.
+double area_below_m2(const Mesh& mesh, double level_m);
 
 }  // namespace tilth

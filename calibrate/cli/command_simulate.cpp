@@ -16,9 +16,11 @@
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/soil_choice.hpp"
 #include "calibrate/cli/solver_version.hpp"
+#include "calibrate/cli/sweep_simulation.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
 #include "calibrate/parallel.hpp"
+#include "dem_core/stl.hpp"
 
 namespace tilth {
 namespace {
@@ -45,7 +47,9 @@ void apply_settings(const std::vector<std::string>& settings, TestConfig& config
   }
 }
 
-SoilMaterial starting_material(const SimulateOptions& o, std::vector<std::string>& problems) {
+/// The nominal or fitted material; takes what the config needs from the state of the soil, if there is one.
+SoilMaterial starting_material(const SimulateOptions& o, TestConfig& config,
+                               std::vector<std::string>& problems) {
   if (!o.fit.empty()) {
     const FittedSet set = read_fit_card(o.fit);
     if (!o.soil.empty() && set.soil_id != o.soil)
@@ -54,7 +58,24 @@ SoilMaterial starting_material(const SimulateOptions& o, std::vector<std::string
     return set.material;
   }
   const SoilData soil = load_soil(chosen_soil_folder(o.soil, o.soil_folder));
+  apply_soil_state(config, soil);
   return material_of(soil, nominal_values(soil));
+}
+
+/// --vtk and --tool, which only a sweep has.
+void apply_tool(const SimulateOptions& o, TestConfig& config, std::vector<std::string>& problems) {
+  auto* sweep = std::get_if<SweepTillageConfig>(&config);
+  if (!sweep && (o.vtk || !o.tool.empty()))
+    problems.push_back(fmt::format("--vtk and --tool need --experiment sweep_tillage, not {}",
+                                   o.experiment));
+  if (!sweep || o.tool.empty()) return;
+  std::vector<std::string> repairs;
+  try {
+    sweep->tool_mesh = read_stl(o.tool, o.tool_metres_per_unit, &repairs);
+  } catch (const std::runtime_error& e) {
+    problems.push_back(fmt::format("--tool {}", e.what()));
+  }
+  for (const std::string& repair : repairs) std::cerr << o.tool << ": " << repair << '\n';
 }
 
 void draw(const std::string& id, const std::vector<std::uint64_t>& seeds,
@@ -90,15 +111,20 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
   command.add_option("--threads", o.num_threads, "threads (default: all processors)")
       ->check(CLI::Range(0, 1024));
   command.add_flag("--quick", o.quick, "small and fast specimen");
+  command.add_flag("--vtk", o.vtk, "sweep_tillage: write a ParaView time series to OUT/vtk");
+  command.add_option("--tool", o.tool, "sweep_tillage: STL file of the tool (x forward, z up)");
+  command.add_option("--tool-unit-m", o.tool_metres_per_unit, "metres per unit of --tool (0.001)")
+      ->check(CLI::PositiveNumber);
 }
 
 int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   std::vector<std::string> problems;
   TestConfig config = virtual_test(o.experiment, o.quick ? Fidelity::preview : Fidelity::confirm);
-  SoilMaterial material = starting_material(o, problems);
+  SoilMaterial material = starting_material(o, config, problems);
   apply_settings(o.settings, config, material, problems);
+  apply_tool(o, config, problems);
   if (!problems.empty()) throw ConfigError(problems);
-  for (const std::string& p : range_problems(fields(config))) problems.push_back(p);
+  for (const std::string& p : tilth::problems(config)) problems.push_back(p);
   for (const std::string& p : tilth::problems(material)) problems.push_back(p);
   if (!problems.empty()) throw ConfigError(problems);
   const std::filesystem::path folder = make_run_folder(o.out, o.experiment);
@@ -112,7 +138,11 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
     runs.push_back({config, "", material});
     set_packing_seed(runs.back().config, seed);
   }
-  const std::vector<ExperimentResult> results = run_tests(runs, context);
+  const auto* sweep = std::get_if<SweepTillageConfig>(&config);
+  std::vector<std::string> missing;
+  const std::vector<ExperimentResult> results =
+      sweep ? simulate_sweeps(*sweep, material, seeds, context, {folder, o.vtk}, missing)
+            : run_tests(runs, context);
 
   write_file(folder / "result.json",
              simulation_json(config, material, seeds, results, command_line));
@@ -127,7 +157,8 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
       std::cout << fmt::format("  {:<34} {:.6g}\n", f.name, f.value);
     all_completed = all_completed && results[k].status == RunStatus::completed;
   }
-  draw(o.experiment, seeds, results, folder);
+  if (!sweep) draw(o.experiment, seeds, results, folder);
+  for (const std::string& why : missing) std::cerr << "no figure: " << why << '\n';
   std::cout << "results: " << folder.string() << '\n';
   if (interrupt_flag().load()) return exit_budget;
   return all_completed ? exit_done : exit_failed_runs;

@@ -21,6 +21,9 @@ struct SimulateOptions {
   int num_seeds = 1;
   int num_threads = 0;
   bool quick = false;
+  bool vtk = false;                  ///< sweep_tillage: a ParaView time series
+  std::string tool;                  ///< sweep_tillage: an STL file instead of the parametric sweep
+  double tool_metres_per_unit = 1e-3;
 };
 
 void add_simulate_options(CLI::App& command, SimulateOptions& options);

@@ -62,6 +62,7 @@ std::vector<PlannedTest> plan_tests(const SoilData& soil, Fidelity fidelity, Tar
     const TestCondition* condition = soil.condition(target.condition_id);
     if (!condition) throw ConfigError({label(target) + ": its condition is not in conditions.csv"});
     TestConfig config = virtual_test(target.test_id, fidelity);
+    apply_soil_state(config, soil);
     apply_condition(config, *condition);
     check_setup(config, *condition);
     auto test =

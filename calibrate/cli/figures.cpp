@@ -60,8 +60,31 @@ std::string draw_curves(const CurveFigure& figure, const std::filesystem::path& 
   return run_gnuplot(script + "\n", svg);
 }
 
+namespace {
+
+/// Five marks over a range; a log axis shorter than a decade has none of its own.
+std::string five_tics(double from, double to, bool log_scale) {
+  std::string tics = "set xtics (";
+  for (int k = 0; k < 5; ++k) {
+    const double share = k / 4.0;
+    const double value = log_scale ? from * std::pow(to / from, share) : from + share * (to - from);
+    tics += fmt::format("{}'{:.3g}' {:.7g}", k > 0 ? ", " : "", value, value);
+  }
+  return tics + ")\n";
+}
+
+/// Of the profile at the fitted value: far above 0 where the emulators see a better place elsewhere.
+double difference_at_best(const ProfileFigure& figure) {
+  const auto nearest = std::ranges::min_element(
+      figure.values, {}, [&](double value) { return std::abs(value - figure.best); });
+  return figure.chi_square_difference[static_cast<std::size_t>(nearest - figure.values.begin())];
+}
+
+}  // namespace
+
 std::string draw_profile_figure(const ProfileFigure& figure, const std::filesystem::path& svg) {
-  const double top = 3.0 * figure.level;
+  if (figure.values.empty()) return "there is no profile to draw";
+  const double top = std::max(3.0 * figure.level, 1.3 * difference_at_best(figure));
   const std::size_t n = figure.values.size();
   std::size_t first = n, last = 0;
   std::vector<std::vector<double>> curve;
@@ -81,10 +104,10 @@ std::string draw_profile_figure(const ProfileFigure& figure, const std::filesyst
   std::string script = gnuplot_header(svg, 520) + gnuplot_data("profile", curve);
   script += fmt::format(
       "set title {}\nset xlabel {}\nset ylabel 'chi-square above the best, the others refitted'\n"
-      "set format x '%.3g'\n{}set xrange [{:.7g}:{:.7g}]\nset yrange [0:{:.7g}]\n"
+      "{}{}set xrange [{:.7g}:{:.7g}]\nset yrange [0:{:.7g}]\n"
       "set arrow from {:.7g}, graph 0 to {:.7g}, graph 1 nohead dt 3 lc rgb '#444444'\n",
       gnuplot_quoted(figure.title), gnuplot_quoted(figure.x_label), figure.log_x ? "set logscale x\n" : "",
-      figure.values[first], figure.values[last], top, figure.best, figure.best);
+      five_tics(figure.values[first], figure.values[last], figure.log_x), figure.values[first], figure.values[last], top, figure.best, figure.best);
   if (std::isfinite(figure.low) && std::isfinite(figure.high))
     script += fmt::format(
         "set object rectangle from {:.7g}, graph 0 to {:.7g}, graph 1 fc rgb '{}' fs transparent "
@@ -113,10 +136,13 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
+  std::size_t longest = 40;  // characters of a label's line
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double y = static_cast<double>(rows.size() - k);
     const TargetRow& r = rows[k];
-    tics += fmt::format("{}{} {}", k ? ", " : "", gnuplot_quoted(rows.size() > many_rows ? one_line(r.label) : r.label), y);
+    const std::string label = rows.size() > many_rows ? one_line(r.label) : r.label;
+    if (rows.size() > many_rows) longest = std::max(longest, label.size());
+    tics += fmt::format("{}{} {}", k ? ", " : "", gnuplot_quoted(label), y);
     if (!std::isfinite(r.residual)) continue;
     (r.holdout ? held : fitted).push_back({r.residual, y, r.seed_sd});
     reach = std::max(reach, std::abs(r.residual) + r.seed_sd + 0.5);
@@ -124,11 +150,11 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
   script += tics + ")\n";
   script += fmt::format(
       "set title {}\nset xlabel '(simulated - target) / total sigma, bars: one packing'\n"
-      "set xrange [{:.3g}:{:.3g}]\nset yrange [0.4:{}]\nset lmargin 48\n"
+      "set xrange [{:.3g}:{:.3g}]\nset yrange [0.4:{}]\nset lmargin {}\n"
       "set object rectangle from -1, graph 0 to 1, graph 1 fc rgb '#3d8b37' fs transparent solid "
       "0.10 noborder behind\n"
       "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb '#444444'\n",
-      gnuplot_quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6);
+      gnuplot_quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6, longest + 8);
   std::string plot = "plot ";
   if (!fitted.empty()) {
     script += gnuplot_data("fitted", fitted);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/run_config.hpp"
@@ -20,6 +21,8 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
       ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
+  app.add_option("--tests", o.tests, "whose targets: mechanical, sweep (draught, tracers) or all")
+      ->check(CLI::IsMember({"mechanical", "sweep", "all"}));
   app.add_option("--seed", o.seed, "first packing seed (default 1)")->check(CLI::NonNegativeNumber);
   app.add_flag("--quick", o.quick, "a labelled preview: small specimens, few packings");
   app.add_flag("--force", o.force, "fit even with more free parameters than observations");
@@ -29,16 +32,32 @@ std::string job_command(const JobOptions& o) {
   std::string text = o.soil_folder.empty() ? "calibrate --soil " + o.soil
                                            : "calibrate --data " + o.soil_folder;
   if (!o.config.empty()) text += " --config " + o.config;
+  if (o.tests != "all") text += " --tests " + o.tests;
   text += fmt::format(" --seed {}", o.seed);
   if (o.quick) text += " --quick";
   if (o.force) text += " --force";
   return text;
 }
 
+namespace {
+
+/// Leaves the targets of the tests asked for. @throws ConfigError if none is left to fit
+void choose_tests(const std::string& tests, SoilData& soil) {
+  if (tests == "all") return;
+  const bool sweep = tests == "sweep";
+  std::erase_if(soil.targets,
+                [sweep](const SoilTarget& t) { return (t.test_id == "sweep_tillage") != sweep; });
+  if (std::ranges::all_of(soil.targets, &SoilTarget::holdout))
+    throw ConfigError({fmt::format("--tests {}: {} has no such target to fit", tests, soil.id)});
+}
+
+}  // namespace
+
 FitJob read_job(const JobOptions& o) {
   FitJob job;
   const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
   job.soil = load_soil(folder);
+  choose_tests(o.tests, job.soil);
   job.options = o.quick ? quick_fit_options() : FitOptions{};
   job.options.seed = o.seed;
   job.options.force = o.force;

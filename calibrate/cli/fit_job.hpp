@@ -19,12 +19,13 @@ struct JobOptions {
   std::string soil;
   std::string soil_folder;  ///< --data: a folder in the soil format, instead of --soil
   std::string config;
+  std::string tests = "all";  ///< whose targets are used: "mechanical", "sweep" or "all"
   std::uint64_t seed = 1;
   bool quick = false;
   bool force = false;
 };
 
-/// Adds --soil, --data, --config, --seed, --quick and --force.
+/// Adds --soil, --data, --config, --tests, --seed, --quick and --force.
 void add_job_options(CLI::App& app, JobOptions& options);
 
 /// The command line that gives the same result, without what does not influence it.

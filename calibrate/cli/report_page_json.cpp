@@ -87,7 +87,7 @@ std::string fit_section(const Json& card) {
   }
   const Json& s = card.at("fit_statistics");
   std::string text = "<h2 id=\"fit\">Fit</h2>\n" + html_table(table);
-  text += fmt::format("<p>chi-square {} at the start, {} at the end, {} on packings no stage had seen; {} "
+  text += fmt::format("<p>chi-square {} at the start (one packing), {} at the end, {} on packings no stage had seen; {} "
                       "targets, {} free parameters, {} independent observations; sigma: {}; best value found {} times of {} starts.</p>\n",
                       number_at(s, "chi_square_start"), number_at(s, "chi_square"),
                       number_at(s, "chi_square_fresh_seeds"), number_at(s, "num_observations"),

@@ -87,7 +87,19 @@ void apply_fidelity(AngleOfReposeConfig& c, Fidelity fidelity) {
   c.wall_speed_over_fall_speed = 375 * size_of(fidelity).speed_over_wave_speed;
 }
 
+void apply_fidelity(SweepTillageConfig& c, Fidelity fidelity) {
+  // Coarse aggregates and narrower bins to search, finer ones to confirm: 500, 900 and 3100 of them. The
+  // tool, its depth and its speed stay, so that the answer is the same quantity; what the size of the
+  // aggregates does to it is the bias a fit measures.
+  switch (fidelity) {
+    case Fidelity::preview: c.particle_radius_m = 0.030, c.bin_length_m = 1.1, c.bin_width_m = 0.6; break;
+    case Fidelity::search: c.particle_radius_m = 0.025, c.bin_length_m = 1.1, c.bin_width_m = 0.6; break;
+    case Fidelity::confirm: c.particle_radius_m = 0.018; break;
+  }
+}
+
 std::vector<std::string> own_problems(const DrainedTriaxialConfig& c) { return problems(c); }
+std::vector<std::string> own_problems(const SweepTillageConfig& c) { return problems(c); }
 std::vector<std::string> own_problems(const auto&) { return {}; }
 
 bool same_values(TestConfig a, TestConfig b) {
@@ -102,7 +114,8 @@ bool same_values(TestConfig a, TestConfig b) {
 /// In the order of TestConfig.
 constexpr const char* ids[] = {"unconfined_compression", "direct_shear",     "confined_compression",
                                "drained_triaxial",       "direct_tension",   "interface_shear",
-                               "cone_penetration",       "vane_shear",       "angle_of_repose"};
+                               "cone_penetration",       "vane_shear",       "angle_of_repose",
+                               "sweep_tillage"};
 static_assert(std::size(ids) == std::variant_size_v<TestConfig>);
 
 /// A default config of every kind, in the order of TestConfig.
@@ -158,8 +171,30 @@ std::vector<std::string> problems(TestConfig config) {
   return found;
 }
 
+namespace {
+
+/// Tracers lie on a grid of all depths and offsets, so that one pass of the tool serves many sites.
+bool join_sweeps(SweepTillageConfig& a, const SweepTillageConfig& b) {
+  SweepTillageConfig with_tracers_of_a = b;
+  with_tracers_of_a.tracer_depth_m = a.tracer_depth_m;
+  with_tracers_of_a.tracer_lateral_m = a.tracer_lateral_m;
+  if (!same_values(a, with_tracers_of_a)) return false;
+  const auto add = [](std::vector<double>& to, const std::vector<double>& from) {
+    for (const double v : from)
+      if (std::ranges::find(to, v) == to.end()) to.push_back(v);
+    std::ranges::sort(to);
+  };
+  add(a.tracer_depth_m, b.tracer_depth_m);
+  add(a.tracer_lateral_m, b.tracer_lateral_m);
+  return true;
+}
+
+}  // namespace
+
 bool join_series(TestConfig& series, const TestConfig& other) {
   if (same_values(series, other)) return true;
+  if (auto* sweep = std::get_if<SweepTillageConfig>(&series))
+    if (const auto* more = std::get_if<SweepTillageConfig>(&other)) return join_sweeps(*sweep, *more);
   auto* a = std::get_if<DrainedTriaxialConfig>(&series);
   const auto* b = std::get_if<DrainedTriaxialConfig>(&other);
   // A series of several cell pressures has features of its own and stays whole.
@@ -179,6 +214,17 @@ void set_packing_seed(TestConfig& config, std::uint64_t seed) {
   std::visit([seed](auto& c) { c.packing_seed = seed; }, config);
 }
 
+void apply_soil_state(TestConfig& config, const SoilData& soil) {
+  auto* sweep = std::get_if<SweepTillageConfig>(&config);
+  if (!sweep) return;
+  const auto value = [&soil](std::string_view quantity) {
+    const auto found = std::ranges::find(soil.state, quantity, &StateQuantity::quantity);
+    return found == soil.state.end() ? std::nullopt : std::optional<double>(found->value);
+  };
+  if (const auto dry = value("dry_bulk_density_kg_per_m3"))
+    sweep->bulk_density_kg_per_m3 = *dry * (1 + value("water_content_drained").value_or(0.0));
+}
+
 void apply_condition(TestConfig& config, const TestCondition& condition) {
   const std::vector<Field> settings = fields(config);
   for (const ConditionNumbers& given : condition.numbers)
@@ -196,6 +242,10 @@ std::string feature_name(const SoilTarget& target, const TestCondition& conditio
     return fmt::format("{}@{}", target.observable_id,
                        triaxial_state_label(condition.number("cell_pressure_Pa").value_or(0.0),
                                             condition.number("relative_density")));
+  const auto depth_m = condition.number("tracer_depth_m");
+  const auto aside_m = condition.number("tracer_lateral_m");
+  if (!known->needed_columns.empty() && known->needed_columns.front() == "tracer_depth_m" && depth_m && aside_m)
+    return fmt::format("{}@{}", target.observable_id, tracer_label(*depth_m, *aside_m));
   return target.observable_id;
 }
 
@@ -212,7 +262,8 @@ std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
           [&](const InterfaceShearConfig& c) { return run_interface_shear(members, c, packings, options); },
           [&](const ConePenetrationConfig& c) { return run_cone_penetration(members, c, packings, options); },
           [&](const VaneShearConfig& c) { return run_vane_shear(members, c, packings, options); },
-          [&](const AngleOfReposeConfig& c) { return run_angle_of_repose(members, c, packings, options); }},
+          [&](const AngleOfReposeConfig& c) { return run_angle_of_repose(members, c, packings, options); },
+          [&](const SweepTillageConfig& c) { return run_sweep_tillage(members, c, packings, options); }},
       config);
 }
 

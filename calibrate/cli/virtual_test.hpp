@@ -16,6 +16,7 @@
 #include "experiments/direct_tension.hpp"
 #include "experiments/drained_triaxial.hpp"
 #include "experiments/interface_shear.hpp"
+#include "experiments/sweep_tillage.hpp"
 #include "experiments/unconfined_compression.hpp"
 #include "experiments/vane_shear.hpp"
 
@@ -24,7 +25,7 @@ namespace tilth {
 using TestConfig =
     std::variant<UnconfinedCompressionConfig, DirectShearConfig, ConfinedCompressionConfig,
                  DrainedTriaxialConfig, DirectTensionConfig, InterfaceShearConfig,
-                 ConePenetrationConfig, VaneShearConfig, AngleOfReposeConfig>;
+                 ConePenetrationConfig, VaneShearConfig, AngleOfReposeConfig, SweepTillageConfig>;
 
 /// How large and how slow: `search` finds, `confirm` is believed.
 enum class Fidelity {
@@ -49,16 +50,22 @@ std::vector<Field> fields(TestConfig& config);
 /// Everything a test cannot be run with: ranges, and what its own numbers contradict.
 std::vector<std::string> problems(TestConfig config);
 
-/// Adds the states of `other` to a series that runs in the same packs (triaxial tests that differ in
-/// cell pressure and relative density only). False where the two are not of one series.
+/// Adds the states of `other` to a series that runs in the same packs: triaxial tests that differ in
+/// cell pressure and relative density only, sweeps that differ in their tracers only. False where the
+/// two are not of one series.
 bool join_series(TestConfig& series, const TestConfig& other);
 
 void set_packing_seed(TestConfig& config, std::uint64_t seed);
 
+/// Takes what a test of a bed needs from the state of the soil: the bulk density as it lies, dry density
+/// x (1 + water content), where soil.json has both; the dry one where it has no water content.
+void apply_soil_state(TestConfig& config, const SoilData& soil);
+
 /// Takes normal stresses and load stresses of a condition over into the config.
 void apply_condition(TestConfig& config, const TestCondition& condition);
 
-/// Name of the feature that answers a target: direct shear stresses carry "@<normal stress>".
+/// Name of the feature that answers a target: direct shear stresses carry "@<normal stress>", tracer
+/// displacements "@<depth>m_<offset>m".
 std::string feature_name(const SoilTarget& target, const TestCondition& condition);
 
 std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,

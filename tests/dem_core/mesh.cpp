@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 #include "dem_core/mesh_features.hpp"
@@ -190,5 +191,43 @@ TEST_CASE("stl: broken files are refused with their name and the reason", "[dem_
   CHECK_THAT(complaint(open), Contains("not closed"));
   const std::string binary = binary_stl(unit_box());
   CHECK_THAT(complaint(binary.substr(0, binary.size() - 1)), Contains("neither"));
+  std::string not_finite = good;
+  not_finite.replace(not_finite.find("vertex ", 400), 8, "vertex nan ");
+  CHECK_THAT(complaint(not_finite), Contains("vertex") && Contains("is not three numbers"));
+  Mesh bad = unit_box();
+  bad.vertex_m[bad.triangle[2][0]].x() = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(complaint(binary_stl(bad)), Contains("has a corner that is not a finite number"));
+  Mesh flat = unit_box();
+  flat.vertex_m[0] = Vec3(0.5, 1, 0);  // onto the diagonal of its face
+  CHECK_THAT(complaint(binary_stl(flat)), Contains("has no area: its corners lie on one line"));
+  Mesh mixed = unit_box();
+  std::swap(mixed.triangle[3][0], mixed.triangle[3][1]);
+  CHECK_THAT(complaint(binary_stl(mixed)), Contains("triangles") && Contains("3") &&
+                                               Contains("orientation is not consistent"));
+  CHECK_THAT(complaint(binary_stl(unit_box()).substr(0, 84 + 50 * 7 + 20)),
+             Contains("cut off in triangle 7"));
   CHECK_THROWS_WITH(read_stl("/nonexistent.stl", 1.0), Contains("cannot read /nonexistent.stl"));
+}
+
+TEST_CASE("stl: a surface turned inside out and collapsed triangles are repaired with a note",
+          "[dem_core][mesh]") {
+  const TemporaryFile file;
+  std::vector<std::string> repairs;
+  Mesh inside_out = unit_box();
+  for (auto& t : inside_out.triangle) std::swap(t[0], t[1]);
+  file.write(binary_stl(inside_out));
+  CHECK(mesh_volume_m3(read_stl(file.path, 1.0, &repairs)) == 6);
+  REQUIRE(repairs.size() == 1);
+  CHECK_THAT(repairs.front(), Contains("faced inwards"));
+  Mesh with_needles = unit_box();
+  with_needles.triangle.push_back({0, 0, 1});
+  with_needles.triangle.push_back({2, 2, 2});
+  file.write(binary_stl(with_needles));
+  const Mesh box = read_stl(file.path, 1.0, &repairs);
+  CHECK(box.triangle.size() == 12);
+  REQUIRE(repairs.size() == 1);
+  CHECK_THAT(repairs.front(), Contains("2 triangles") && Contains("left out"));
+  file.write(binary_stl(unit_box()));
+  read_stl(file.path, 1.0, &repairs);
+  CHECK(repairs.empty());
 }

@@ -13,6 +13,10 @@ list(APPEND TILTH_TEST_SOURCES
   experiments/interface_shear.cpp
   experiments/packs.cpp
   experiments/settled_bed.cpp
+  experiments/steady_window.cpp
+  experiments/sweep_shape.cpp
+  experiments/sweep_tillage.cpp
+  experiments/tracers.cpp
   experiments/triaxial_features.cpp
   experiments/unconfined_compression.cpp
   experiments/vane_shear.cpp)
