@@ -233,6 +233,20 @@ TEST_CASE("Fit: a target outside everything the model can do is called unreachab
   REQUIRE(summary.has_unreachable_target());
 }
 
+TEST_CASE("Fit: a model that does not fit is called that, one that does is not", "[calibrate][fit]") {
+  const auto misfits = [](const std::vector<Target>& targets) {
+    const FitSummary summary =
+        fit(soil_parameters(), targets, simulator_of(soil_formula), nullptr, small_options());
+    return std::ranges::count_if(summary.warnings, [](const std::string& w) {
+      return w.starts_with("the model does not fit: reduced chi-square");
+    });
+  };
+  std::vector<Target> targets = soil_targets(0.05, 3);
+  CHECK(misfits(targets) == 0);
+  targets[3].value = 5.0;  // 0.2 + friction <= 1.7
+  CHECK(misfits(targets) == 1);
+}
+
 TEST_CASE("Fit: gates are judged before the search and name what is wrong", "[calibrate][fit]") {
   std::vector<Target> targets = soil_targets(0.05, 0);
   targets[3].value = 5.0;  // 0.2 + friction <= 1.7
