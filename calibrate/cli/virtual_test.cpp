@@ -205,6 +205,11 @@ bool join_series(TestConfig& series, const TestConfig& other) {
   with_series_of_a.cell_pressure_Pa = a->cell_pressure_Pa;
   with_series_of_a.relative_density = a->relative_density;
   if (!same_values(series, with_series_of_a)) return false;
+  for (std::size_t k = 0; k < a->cell_pressure_Pa.size(); ++k) {
+    const bool same_density =
+        b->relative_density.empty() || a->relative_density[k] == b->relative_density.front();
+    if (a->cell_pressure_Pa[k] == b->cell_pressure_Pa.front() && same_density) return true;
+  }
   a->cell_pressure_Pa.push_back(b->cell_pressure_Pa.front());
   for (const double d : b->relative_density) a->relative_density.push_back(d);
   return true;

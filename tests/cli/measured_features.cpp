@@ -5,6 +5,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "calibrate/cli/dem_problem.hpp"
 #include "tests/calibrate/soil_folder.hpp"
 
 using namespace tilth;
@@ -24,6 +25,19 @@ TEST_CASE("Features: the shipped rows of the Karlsruhe sand are those of its cur
   const std::string source = soil.targets.front().origin.source;
   CHECK(measurements_csv(features_of_curves(soil, fitted, source)) ==
         soil_test::read_text(soil.folder / "measurements.csv"));
+}
+
+TEST_CASE("Features: each triaxial test is a state of the series once, however many targets it has",
+          "[cli][features]") {
+  const SoilData soil = sand();
+  for (const auto& [scope, num_states] :
+       {std::pair{TargetScope::fitted, 6U}, {TargetScope::holdouts, 12U}, {TargetScope::all, 18U}}) {
+    const std::vector<PlannedTest> tests = plan_tests(soil, Fidelity::search, scope);
+    REQUIRE(tests.size() == 1);
+    const auto& series = std::get<DrainedTriaxialConfig>(tests.front().config);
+    CHECK(series.cell_pressure_Pa.size() == num_states);
+    CHECK(series.relative_density.size() == num_states);
+  }
 }
 
 TEST_CASE("Features: six tests are fitted, twelve held out, all measured", "[cli][features]") {
