@@ -33,7 +33,7 @@ std::filesystem::path chosen_soil_folder(const std::string& soil, const std::str
 std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const char* name :
-       {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv", "curves.csv"})
+       {"soil.json", "conditions.csv", "measurements.csv", "parameters.csv", "curves.csv", "tracers.csv"})
     if (std::filesystem::exists(folder / name)) files.push_back(folder / name);
   return files;
 }

@@ -9,6 +9,7 @@
 
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/soil_choice.hpp"
 #include "calibrate/cli/vtk_files.hpp"
 #include "tests/calibrate/soil_folder.hpp"
 #include "tests/cli/program_run.hpp"
@@ -67,6 +68,7 @@ TEST_CASE("Tracers: the sites of a plot are one pass of the tool, and carry thei
   CHECK(config.tracer_depth_m == std::vector<double>{0.03, 0.06});
   CHECK(config.tracer_lateral_m == std::vector<double>{-0.1, 0.05});
   CHECK(config.tool_depth_m == 0.08);
+  CHECK(soil_tables(folder.path()).back().filename() == "tracers.csv");  // an input of the fit
   CHECK(config.bulk_density_kg_per_m3 == 1450 * (1 + 0.1915));
   REQUIRE(sweeps.front().answers.size() == 6);
   CHECK(sweeps.front().answers[0].feature == "forward_displacement_m@0.03m_0.05m");
