@@ -5,7 +5,7 @@
 //
 //     build/release/bin/search_comparison          # 30 twins per data case
 //     build/release/bin/search_comparison 5        # fewer
-//     build/release/bin/search_comparison --grains # three twins of the DEM problem itself, an hour
+//     build/release/bin/search_comparison --grains # three twins of the DEM problem itself; not timed yet
 #include <fmt/format.h>
 
 #include <cstdio>
