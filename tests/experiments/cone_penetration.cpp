@@ -78,12 +78,13 @@ TEST_CASE("cone: a loose bed resists in proportion to gravity and stiffness", "[
   // With the stiffness scaled too it is the same motion in half the time: powers of two, so exact up to
   // the pi in the features.
   CHECK_THAT(resistance_Pa(heavy, stiff), WithinRel(4 * once_Pa, 1e-9));
-  // With the stiffness left as it was the heavier bed is the softer one under its own weight, and settles
-  // to another packing: 2.5 here, 2.95 in the mean of four packings; between the two bounds below.
-  const double ratio = resistance_Pa(heavy) / once_Pa;
-  CAPTURE(once_Pa, ratio);
-  CHECK(ratio > 2.0);
-  CHECK(ratio < 5.0);
+  // With the stiffness left as it was the heavier bed is the softer one under its own weight: resistance
+  // grows as E_c^0.2 (docs/experiments/cone_penetration.md), so 4^0.8 = 3.0. Two packings scatter by 11 %.
+  double light_Pa = once_Pa, heavy_Pa = resistance_Pa(heavy);
+  c.packing_seed = heavy.packing_seed = 2;
+  light_Pa += resistance_Pa(c);
+  heavy_Pa += resistance_Pa(heavy);
+  CHECK_THAT(heavy_Pa / light_Pa, WithinRel(3.0, 0.25));
 }
 
 TEST_CASE("cone: friction between grains, a rough cone and bonds each raise the resistance",

@@ -55,6 +55,7 @@ TEST_CASE("Drained triaxial: known facts of frictional spheres", "[experiments][
   std::vector<SoilMaterial> soils;
   for (const double f : frictions) soils.push_back(sand(f));
   const std::vector<ExperimentResult> results = test(soils, config);
+  double dense_over_loose_end = 0.0;
   for (std::size_t k = 0; k < results.size(); ++k) {
     const auto of = [&](const char* name, const char* state) {
       return results[k].feature(std::string(name) + state);
@@ -66,22 +67,24 @@ TEST_CASE("Drained triaxial: known facts of frictional spheres", "[experiments][
       // 3 %: what local damping 0.2 takes off one side at this rate (docs/experiments).
       CHECK_THAT(held_Pa, WithinRel(100e3, 0.03));
     }
-    // The density asked for came out, to the tolerance of the void ratio over the own range.
-    CHECK_THAT(of("relative_density", loose), WithinAbs(0.1, 0.2));
-    CHECK_THAT(of("relative_density", dense), WithinAbs(0.9, 0.2));
+    // The density asked for came out: 0.12 is the largest distance of some 900 specimens of 200 spheres
+    // that were not in their own densest state (docs/experiments/drained_triaxial.md).
+    CHECK_THAT(of("relative_density", loose), WithinAbs(0.1, 0.12));
+    CHECK_THAT(of("relative_density", dense), WithinAbs(0.9, 0.12));
     CHECK(of("loosest_void_ratio", dense) > of("densest_void_ratio", dense));
     // Density raises peak and dilation (Thornton, Geotechnique 50 (2000) 43-53) ...
     CHECK(of("peak_stress_ratio", dense) > of("peak_stress_ratio", loose));
     CHECK(of("dilation_rate", dense) > of("dilation_rate", loose));
     CHECK(of("final_volumetric_strain", dense) < of("final_volumetric_strain", loose));
-    // ... and is forgotten in the end: 30 % is 2.4 times the scatter of the ratio of two specimens of
-    // 400 spheres (9 % each, from runs that differ in damping only).
-    CHECK_THAT(of("end_stress_ratio", dense), WithinRel(of("end_stress_ratio", loose), 0.3));
+    dense_over_loose_end += of("end_stress_ratio", dense) / of("end_stress_ratio", loose) / 4;
     if (k == 0) continue;
     // Peak strength grows with sliding friction.
     CHECK(of("peak_stress_ratio", dense) >
           results[k - 1].feature(std::string("peak_stress_ratio") + dense));
   }
+  // ... and is forgotten in the end: one pair of specimens of 400 spheres differs by up to 24 %, the mean
+  // of the four by 2 to 6 % (four packings).
+  CHECK_THAT(dense_over_loose_end, WithinAbs(1.0, 0.1));
   // The end grows with friction at first and then saturates (Huang, Hanley, O'Sullivan & Kwok, Int. J.
   // Numer. Anal. Meth. Geomech. 38 (2014) 1276-1297): far below 1.36, where the Karlsruhe sand ends.
   const auto end = [&](std::size_t k) {
@@ -89,7 +92,7 @@ TEST_CASE("Drained triaxial: known facts of frictional spheres", "[experiments][
                   results[k].feature(std::string("end_stress_ratio") + dense));
   };
   CHECK(end(2) > 1.1 * end(0));
-  CHECK(end(3) < 1.30);
+  CHECK(end(3) < 1.0);  // 0.89 +- 0.04 in four packings
 }
 
 TEST_CASE("Drained triaxial: stress and modulus times 4 leave every ratio as it was",
