@@ -26,6 +26,7 @@ list(
   calibrate/run_store.cpp
   calibrate/profile.cpp
   calibrate/search_economy.cpp
+  calibrate/scale_study.cpp
   calibrate/secants.cpp
   calibrate/sensitivity_morris.cpp
   calibrate/sensitivity_noise.cpp
