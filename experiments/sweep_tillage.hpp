@@ -16,7 +16,7 @@ namespace tilth {
 struct SweepTillageConfig {
   double bin_width_m = 0.7;
   double bin_length_m = 1.2;
-  double bed_depth_m = 0.16;          ///< before it settles
+  double bed_depth_m = 0.22;          ///< before it settles; a floor nearer than 0.1 m below the edge is felt
   double particle_radius_m = 0.018;   ///< mean; the number of aggregates follows
   double size_spread = 0.25;
   double porosity = 0.40;             ///< between the spheres that stand for aggregates: a choice

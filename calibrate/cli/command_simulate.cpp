@@ -17,50 +17,12 @@
 #include "calibrate/cli/soil_choice.hpp"
 #include "calibrate/cli/solver_version.hpp"
 #include "calibrate/cli/sweep_simulation.hpp"
-#include "calibrate/config_error.hpp"
-#include "calibrate/nearest_name.hpp"
+#include "calibrate/cli/test_settings.hpp"
 #include "calibrate/parallel.hpp"
 #include "dem_core/stl.hpp"
 
 namespace tilth {
 namespace {
-
-/// Sets key=value in the test's config or in the material; every mistake is listed.
-void apply_settings(const std::vector<std::string>& settings, TestConfig& config,
-                    SoilMaterial& material, std::vector<std::string>& problems) {
-  std::vector<Field> all = fields(config);
-  for (const Field& f : fields(material)) all.push_back(f);
-  std::vector<std::string> names;
-  for (const Field& f : all) names.emplace_back(f.name);
-  for (const std::string& setting : settings) {
-    const std::size_t equals = setting.find('=');
-    const std::string key = setting.substr(0, equals);
-    if (equals == std::string::npos) {
-      problems.push_back(fmt::format("--set {}: must be key=value", setting));
-      continue;
-    }
-    const Field* field = find_field(all, key);
-    const std::string wrong = field
-                                  ? set_field(*field, std::string_view(setting).substr(equals + 1))
-                                  : unknown_name_sentence("number", key, names);
-    if (!wrong.empty()) problems.push_back(fmt::format("--set {}: {}", setting, wrong));
-  }
-}
-
-/// The nominal or fitted material; takes what the config needs from the state of the soil, if there is one.
-SoilMaterial starting_material(const SimulateOptions& o, TestConfig& config,
-                               std::vector<std::string>& problems) {
-  if (!o.fit.empty()) {
-    const FittedSet set = read_fit_card(o.fit);
-    if (!o.soil.empty() && set.soil_id != o.soil)
-      problems.push_back(fmt::format("--fit {} is of soil {}, --soil says {}", o.fit, set.soil_id,
-                                     o.soil));
-    return set.material;
-  }
-  const SoilData soil = load_soil(chosen_soil_folder(o.soil, o.soil_folder));
-  apply_soil_state(config, soil);
-  return material_of(soil, nominal_values(soil));
-}
 
 /// --vtk and --tool, which only a sweep has.
 void apply_tool(const SimulateOptions& o, TestConfig& config, std::vector<std::string>& problems) {
@@ -120,13 +82,10 @@ void add_simulate_options(CLI::App& command, SimulateOptions& o) {
 int run_simulate(const SimulateOptions& o, const std::string& command_line) {
   std::vector<std::string> problems;
   TestConfig config = virtual_test(o.experiment, o.quick ? Fidelity::preview : Fidelity::confirm);
-  SoilMaterial material = starting_material(o, config, problems);
-  apply_settings(o.settings, config, material, problems);
+  SoilMaterial material = starting_material({o.soil, o.soil_folder, o.fit}, config, problems);
+  apply_settings("--set", o.settings, config, material, problems);
   apply_tool(o, config, problems);
-  if (!problems.empty()) throw ConfigError(problems);
-  for (const std::string& p : tilth::problems(config)) problems.push_back(p);
-  for (const std::string& p : tilth::problems(material)) problems.push_back(p);
-  if (!problems.empty()) throw ConfigError(problems);
+  refuse_bad_test(std::move(problems), config, material);
   const std::filesystem::path folder = make_run_folder(o.out, o.experiment);
 
   PackingStore packings(default_packing_folder(), solver_version);

@@ -13,6 +13,7 @@
 #include "calibrate/cli/command_fit.hpp"
 #include "calibrate/cli/command_plan.hpp"
 #include "calibrate/cli/command_report.hpp"
+#include "calibrate/cli/command_scale.hpp"
 #include "calibrate/cli/command_sensitivity.hpp"
 #include "calibrate/cli/command_simulate.hpp"
 #include "calibrate/cli/command_validate.hpp"
@@ -53,6 +54,7 @@ int run_program(int argc, const char* const* argv) {
   ReportOptions report_options;
   ValidateOptions validate_options;
   SensitivityCommandOptions sensitivity_options;
+  ScaleCommandOptions scale_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -77,6 +79,8 @@ int run_program(int argc, const char* const* argv) {
   CLI::App* sensitivity =
       app.add_subcommand("sensitivity", "which parameters move which features (Morris, Sobol)");
   add_sensitivity_options(*sensitivity, sensitivity_options);
+  CLI::App* scale = app.add_subcommand("scale", "how large particles may be before tracers go elsewhere");
+  add_scale_options(*scale, scale_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -90,6 +94,7 @@ int run_program(int argc, const char* const* argv) {
     if (features->parsed()) return run_features(features_options);
     if (sensitivity->parsed())
       return run_sensitivity_command(sensitivity_options, command_line);
+    if (scale->parsed()) return run_scale_command(scale_options, command_line);
     if (exporting->parsed()) return run_export(export_options);
     if (plan->parsed()) return run_plan(plan_options);
     if (validate->parsed()) return run_validate(validate_options, command_line);

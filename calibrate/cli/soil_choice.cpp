@@ -30,6 +30,13 @@ std::filesystem::path chosen_soil_folder(const std::string& soil, const std::str
   return soil_folder(data_root(), soil);
 }
 
+std::vector<std::string> soils_with_tracers() {
+  std::vector<std::string> found;
+  for (const std::string& soil : known_soils(data_root()))
+    if (std::filesystem::exists(soil_folder(data_root(), soil) / "tracers.csv")) found.push_back(soil);
+  return found;
+}
+
 std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const char* name :
