@@ -52,7 +52,7 @@ TestConfig test_of(const std::string& id, Fidelity fidelity) {
   return config;
 }
 
-/// Core-seconds per member, "-" without such lanes, or how a member failed.
+/// Core-seconds per member, "-" without such lanes; how a member failed, to standard error, and "failed".
 std::string cost(const TestConfig& config, int num_lanes, PackingStore& packings) {
   if (!lanes_supported(num_lanes)) return "-";
   const std::vector<SoilMaterial> soils = members(num_lanes, config);
@@ -63,7 +63,10 @@ std::string cost(const TestConfig& config, int num_lanes, PackingStore& packings
       run_virtual_test(config, soils, packings, options);
   const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   for (const ExperimentResult& r : results)
-    if (r.status != RunStatus::completed) return fmt::format("{}: {}", name_of(r.status), r.message);
+    if (r.status != RunStatus::completed) {
+      fmt::print(stderr, "{} with {} lanes: {}: {}\n", test_id(config), num_lanes, name_of(r.status), r.message);
+      return "failed";
+    }
   return fmt::format("{:.2f}", cpu_s / num_lanes);
 }
 
@@ -75,8 +78,10 @@ void print_csv(const std::vector<std::string>& ids, PackingStore& packings) {
                                          std::pair{Fidelity::confirm, "confirm"}}) {
       const TestConfig config = test_of(id, fidelity);
       cost(config, 1, packings);  // makes the packing
+      const std::string core_s = cost(config, widest_lanes(), packings);
+      if (core_s == "failed") continue;  // no number, no row
       fmt::print("{},{},{},measured,bench/laboratory_cost --csv; nominal soils 15 % apart in packs of {}\n",
-                 id, name, cost(config, widest_lanes(), packings), widest_lanes());
+                 id, name, core_s, widest_lanes());
       std::fflush(stdout);
     }
 }

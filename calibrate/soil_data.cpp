@@ -167,6 +167,11 @@ std::vector<std::string> problems_of_soil_folder(const std::filesystem::path& fo
   return problems;
 }
 
+std::optional<double> state_value(const SoilData& soil, std::string_view quantity) {
+  const auto found = std::ranges::find(soil.state, quantity, &StateQuantity::quantity);
+  return found == soil.state.end() ? std::nullopt : std::optional<double>(found->value);
+}
+
 std::vector<std::string> known_soils(const std::filesystem::path& data_root) {
   std::vector<std::string> names;
   std::error_code failed;

@@ -186,6 +186,9 @@ SoilData load_soil(const std::filesystem::path& folder,
 std::vector<std::string> problems_of_soil_folder(
     const std::filesystem::path& folder, const SoilVocabulary& vocabulary = soil_vocabulary());
 
+/// A number of the soil's state, nothing where soil.json does not have it.
+std::optional<double> state_value(const SoilData& soil, std::string_view quantity);
+
 /// Names of the soils under `<data_root>/soils`, sorted: each folder that holds a soil.json.
 std::vector<std::string> known_soils(const std::filesystem::path& data_root);
 

@@ -10,12 +10,13 @@
 
 #include "experiments/steady_window.hpp"
 #include "experiments/surface_profile.hpp"
+#include "experiments/sweep_flow.hpp"
 #include "experiments/sweep_stretch.hpp"
 
 namespace tilth {
 namespace {
 
-enum Column : std::size_t { travel, draught, vertical, side, contacts, contact_density };
+enum Column : std::size_t { travel, draught, vertical, side, contacts, contact_density, forward_flow, outward_flow };
 
 std::vector<double> column_of(const Curve& curve, std::size_t column, Window w) {
   std::vector<double> values;
@@ -48,6 +49,14 @@ void add_forces(const Curve& forces, Window w, ExperimentResult& r) {
   r.features.push_back({"tool_contacts", mean_with_error(column_of(forces, contacts, w)).mean});
   r.features.push_back(
       {"contact_density_per_m2", mean_with_error(column_of(forces, contact_density, w)).mean});
+}
+
+void add_flow(const Curve& forces, Window w, const SweepTillageConfig& c, ExperimentResult& r) {
+  if (!c.tool_mesh.triangle.empty()) return;
+  r.features.push_back(
+      {"flow_angle_rad", flow_angle_rad(mean_with_error(column_of(forces, forward_flow, w)).mean,
+                                        mean_with_error(column_of(forces, outward_flow, w)).mean,
+                                        c.speed_m_per_s)});
 }
 
 void add_tracer_features(const std::vector<TracerMean>& means, ExperimentResult& r) {
@@ -143,7 +152,8 @@ void add_surface(const SweepTillageConfig& c, const std::vector<double>& radius_
 
 Curve empty_force_curve() {
   return {"sweep_forces",
-          {"travel_m", "draught_N", "vertical_N", "side_N", "contacts", "contact_density_per_m2"},
+          {"travel_m", "draught_N", "vertical_N", "side_N", "contacts", "contact_density_per_m2",
+           "forward_flow_m_per_s", "outward_flow_m_per_s"},
           {}};
 }
 
@@ -153,6 +163,7 @@ void read_sweep(const SweepTillageConfig& c, const std::vector<double>& radius_m
   const Window w = steady_rows(r.curves.front(), stretch);
   const double steady_begin_m = r.curves.front().rows[w.begin][travel];
   add_forces(r.curves.front(), w, r);
+  add_flow(r.curves.front(), w, c, r);
   add_surface(c, radius_m, record, stretch, r);
   add_tracers(record, steady_begin_m, r);
 }

@@ -10,6 +10,7 @@
 #include "dem_core/time_step.hpp"
 #include "experiments/settled_bed.hpp"
 #include "experiments/sweep_features.hpp"
+#include "experiments/sweep_flow.hpp"
 #include "experiments/sweep_stretch.hpp"
 #include "experiments/tool_shapes.hpp"
 
@@ -148,10 +149,11 @@ class SweepProtocol {
     // The position is that at the interval's end, the force its mean, half an interval earlier.
     const double lag_m = 0.5 * interval_steps * run.dt_s(lane) * config_.speed_m_per_s;
     const Vec3 force_N = run.tool_force_N(sweep_tool, lane);
+    const WingFlow flow = flow_over(run, lane, nose, p.record.surface_m - config_.tool_depth_m);
     const int contacts = run.specimen.state.num_tool_contacts(sweep_tool, lane);
     run.results[static_cast<std::size_t>(lane)].curves.front().rows.push_back(
         {nose - lag_m, -force_N.x(), force_N.z(), force_N.y(), static_cast<double>(contacts),
-         contacts / area_in_soil_m2_});
+         contacts / area_in_soil_m2_, flow.forward_m_per_s, flow.outward_m_per_s});
     if (observer_ && nose >= p.next_frame_m) {
       show(run, lane, p, SweepMoment::travelling);
       p.next_frame_m += observer_->interval_m;
@@ -161,6 +163,22 @@ class SweepProtocol {
     p.stage = Stage::rest;
     p.stage_start_s = run.time_s(lane);
     show(run, lane, p, SweepMoment::stopped);
+  }
+
+  /// Of the parametric sweep; nothing where the tool is another mesh.
+  WingFlow flow_over(const LaneRun& run, int lane, double nose_m, double edge_m) const {
+    if (!config_.tool_mesh.triangle.empty()) return {};
+    const Vec3 origin_m(nose_m, 0, edge_m);
+    std::vector<Vec3> position_m, velocity_m_per_s;
+    std::vector<double> radius_m;
+    for (int i = 0; i < run.specimen.model.num_particles(); ++i) {
+      const Vec3 x_m = run.specimen.state.position_m(i, lane) - origin_m;
+      if (x_m.x() > 0 || x_m.x() < -stretch_.tool_length_m) continue;
+      position_m.push_back(x_m);
+      velocity_m_per_s.push_back(run.specimen.state.velocity_m_per_s(i, lane));
+      radius_m.push_back(run.specimen.model.radius_m[static_cast<std::size_t>(i)]);
+    }
+    return wing_flow(config_.sweep, position_m, velocity_m_per_s, radius_m);
   }
 
   void rest(LaneRun& run, int lane, LaneProgress& p) {

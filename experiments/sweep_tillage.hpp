@@ -64,12 +64,14 @@ Mesh tool_mesh(const SweepTillageConfig& config);
 /// are not used. Forces are those of the soil on the tool: draught positive against the travel, vertical
 /// positive up, side positive to the left (+y).
 /// Curves: `sweep_forces` (travel_m of the nose from the front wall, draught_N, vertical_N, side_N,
-/// contacts, contact_density_per_m2); `tracers` (tracer, initial_depth_m, initial_lateral_m, initial_x_m,
+/// contacts, contact_density_per_m2, forward_flow_m_per_s and outward_flow_m_per_s of the aggregates above the
+/// wings); `tracers` (tracer, initial_depth_m, initial_lateral_m, initial_x_m,
 /// forward_m, lateral_m, vertical_m); `tracer_means` (initial_depth_m, initial_lateral_m, tracers, mean
 /// and sd of each displacement); `surface_before`, `surface_after`, `furrow` (lateral_m, height_m).
 /// Features, means over the steady window with its standard error from the autocorrelation:
 /// draught_N, draught_error_N, vertical_force_N, vertical_force_error_N, side_force_N,
-/// side_force_error_N, steady_begin_m, steady_end_m, tool_contacts, contact_density_per_m2,
+/// side_force_error_N, steady_begin_m, steady_end_m, tool_contacts, contact_density_per_m2, flow_angle_rad (see
+/// sweep_flow.hpp; not for a tool of other shape),
 /// furrow_area_m2, ridge_area_m2, disturbed_area_m2 (cross-section of soil that moved); for every depth and
 /// offset forward_displacement_m@<depth>m_<offset>m, lateral_..., vertical_...; for every depth the mean
 /// over the offsets, forward_displacement_m@<depth>m and vertical_displacement_m@<depth>m.

@@ -18,6 +18,7 @@
 #include "calibrate/cli/solver_version.hpp"
 #include "calibrate/cli/sweep_simulation.hpp"
 #include "calibrate/cli/test_settings.hpp"
+#include "calibrate/draught_band.hpp"
 #include "calibrate/parallel.hpp"
 #include "dem_core/stl.hpp"
 
@@ -54,6 +55,20 @@ void draw(const std::string& id, const std::vector<std::uint64_t>& seeds,
         draw_curves(figure, folder / "figures" / fmt::format("{}_{}.svg", id, first.name));
     if (!why.empty()) std::cerr << "no figure: " << why << '\n';
   }
+}
+
+/// The mean draught beside what the field standard expects, where the soil's texture is known.
+void say_draught_band(const MaterialSource& source, const SweepTillageConfig& sweep,
+                      const std::vector<ExperimentResult>& results) {
+  const std::optional<SoilData> soil = soil_of(source);
+  const std::optional<TextureClass> texture = soil ? texture_class(*soil) : std::nullopt;
+  double sum_N = 0.0, n = 0.0;
+  for (const ExperimentResult& r : results)
+    if (r.status == RunStatus::completed) sum_N += r.feature("draught_N"), n += 1;
+  if (!texture || n == 0 || !sweep.tool_mesh.triangle.empty()) return;
+  const DraughtBand band =
+      sweep_draught_band(*texture, sweep.sweep.width_m, sweep.tool_depth_m, sweep.speed_m_per_s);
+  std::cout << draught_sentence(*texture, band, sum_N / n) << '\n';
 }
 
 }  // namespace
@@ -117,6 +132,7 @@ int run_simulate(const SimulateOptions& o, const std::string& command_line) {
     all_completed = all_completed && results[k].status == RunStatus::completed;
   }
   if (!sweep) draw(o.experiment, seeds, results, folder);
+  if (sweep) say_draught_band({o.soil, o.soil_folder, o.fit}, *sweep, results);
   for (const std::string& why : missing) std::cerr << "no figure: " << why << '\n';
   std::cout << "results: " << folder.string() << '\n';
   if (interrupt_flag().load()) return exit_budget;

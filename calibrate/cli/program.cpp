@@ -19,6 +19,7 @@
 #include "calibrate/cli/command_validate.hpp"
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/fit_all_soils.hpp"
 #include "calibrate/cli/tool_info.hpp"
 #include "calibrate/config_error.hpp"
 
@@ -101,6 +102,7 @@ int run_program(int argc, const char* const* argv) {
     if (report->parsed()) return run_report(report_options);
     if (cache->parsed()) return run_cache(cache_options);
     if (worker->parsed()) return run_worker_command(worker_options);
+    if (fit_options.job.soil == "all") return run_fit_of_all_soils(fit_options, command_line);
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {
     return say_bad_input(e);

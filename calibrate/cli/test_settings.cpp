@@ -13,22 +13,22 @@
 
 namespace tilth {
 
+std::optional<SoilData> soil_of(const MaterialSource& source) {
+  if (source.fit.empty() || !source.soil_folder.empty())
+    return load_soil(chosen_soil_folder(source.soil, source.soil_folder));
+  const std::filesystem::path shipped = data_root() / "soils" / read_fit_card(source.fit).soil_id;
+  return std::filesystem::exists(shipped) ? std::optional<SoilData>(load_soil(shipped)) : std::nullopt;
+}
+
 SoilMaterial starting_material(const MaterialSource& source, TestConfig& config,
                                std::vector<std::string>& problems) {
-  if (source.fit.empty()) {
-    const SoilData soil = load_soil(chosen_soil_folder(source.soil, source.soil_folder));
-    apply_soil_state(config, soil);
-    return material_of(soil, nominal_values(soil));
-  }
+  const std::optional<SoilData> soil = soil_of(source);
+  if (soil) apply_soil_state(config, *soil);
+  if (source.fit.empty()) return material_of(*soil, nominal_values(*soil));
   const FittedSet set = read_fit_card(source.fit);
   if (!source.soil.empty() && set.soil_id != source.soil)
     problems.push_back(
         fmt::format("--fit {} is of soil {}, --soil says {}", source.fit, set.soil_id, source.soil));
-  const std::filesystem::path shipped = data_root() / "soils" / set.soil_id;
-  if (!source.soil_folder.empty() || std::filesystem::exists(shipped))
-    apply_soil_state(config,
-                     load_soil(source.soil_folder.empty() ? shipped
-                                                          : std::filesystem::path(source.soil_folder)));
   return set.material;
 }
 

@@ -3,6 +3,7 @@
 // What a virtual test is run with: the material of a soil or a fit, and key=value of the command line.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,10 @@ struct MaterialSource {
   std::string fit;          ///< fit.json or run folder: its fitted values instead of the nominal ones
 };
 
-/// The nominal or fitted material; takes what the config needs from the state of the soil. A fit of a soil that
-/// is not under data/soils needs soil_folder for that, else the config keeps its own.
+/// The soil; nothing for a fit of a soil that is not under data/soils when no folder is named. @throws ConfigError
+std::optional<SoilData> soil_of(const MaterialSource& source);
+
+/// The nominal or fitted material; takes what the config needs from the state of the soil, where there is a soil.
 SoilMaterial starting_material(const MaterialSource& source, TestConfig& config,
                                std::vector<std::string>& problems);
 

@@ -222,12 +222,8 @@ void set_packing_seed(TestConfig& config, std::uint64_t seed) {
 void apply_soil_state(TestConfig& config, const SoilData& soil) {
   auto* sweep = std::get_if<SweepTillageConfig>(&config);
   if (!sweep) return;
-  const auto value = [&soil](std::string_view quantity) {
-    const auto found = std::ranges::find(soil.state, quantity, &StateQuantity::quantity);
-    return found == soil.state.end() ? std::nullopt : std::optional<double>(found->value);
-  };
-  if (const auto dry = value("dry_bulk_density_kg_per_m3"))
-    sweep->bulk_density_kg_per_m3 = *dry * (1 + value("water_content_drained").value_or(0.0));
+  if (const auto dry = state_value(soil, "dry_bulk_density_kg_per_m3"))
+    sweep->bulk_density_kg_per_m3 = *dry * (1 + state_value(soil, "water_content_drained").value_or(0.0));
 }
 
 void apply_condition(TestConfig& config, const TestCondition& condition) {

@@ -4,6 +4,7 @@ list(
   TILTH_TEST_SOURCES
   calibrate/csv_table.cpp
   calibrate/effective_sample_size.cpp
+  calibrate/draught_band.cpp
   calibrate/emulator.cpp
   calibrate/evaluator.cpp
   calibrate/extrapolated_derivatives.cpp

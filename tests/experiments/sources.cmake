@@ -14,6 +14,7 @@ list(APPEND TILTH_TEST_SOURCES
   experiments/packs.cpp
   experiments/settled_bed.cpp
   experiments/steady_window.cpp
+  experiments/sweep_flow.cpp
   experiments/sweep_shape.cpp
   experiments/sweep_tillage.cpp
   experiments/tracers.cpp
