@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calibrate/diagnosis/normal_probability.hpp"
+#include "calibrate/moderated_variances.hpp"
 
 namespace tilth {
 namespace {
@@ -75,18 +76,11 @@ Eigen::MatrixXd drawn_rows(const Eigen::MatrixXd& rows, std::mt19937_64& rng) {
 
 }  // namespace
 
-Eigen::VectorXd moderated_variances(const Eigen::MatrixXd& samples,
-                                    const Eigen::VectorXd& prior_variances, double prior_freedom) {
-  const auto freedom = static_cast<double>(samples.rows() - 1);
-  const Eigen::VectorXd squares = centred(samples).colwise().squaredNorm();  // df v
-  return (prior_freedom * prior_variances + squares) / (prior_freedom + freedom);
-}
-
 Eigen::MatrixXd moderated_covariance(const Eigen::MatrixXd& samples,
                                      const Eigen::VectorXd& prior_variances, double prior_freedom,
                                      double prior_correlation) {
   const Eigen::VectorXd deviation =
-      moderated_variances(samples, prior_variances, prior_freedom).cwiseSqrt();
+      moderated_variances(samples.transpose(), prior_variances, prior_freedom).cwiseSqrt();
   const auto freedom = static_cast<double>(samples.rows() - 1);
   const double correlation =
       std::clamp((prior_freedom * prior_correlation + freedom * mean_correlation(samples)) /

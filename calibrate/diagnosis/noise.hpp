@@ -30,24 +30,17 @@ struct NoisePriors {
   double correlation = diagnosis_thresholds::prior_correlation;  ///< within one test, in [0, 1)
 };
 
-/// Variances pulled towards what is known of such statistics.
-///
-///   v* = (d0 v_prior + df v) / (d0 + df),   df = rows - 1
-///
-/// Three replicates say little about a variance; without this a nominal 5 % test of the largest
-/// score raises false alarms in 28 to 67 % of cases (docs/theory/diagnosis.md).
-/// @shape samples (rows, m), prior_variances (m)
-/// @source Smyth, Stat. Appl. Genet. Mol. Biol. 3 (2004) article 3
-Eigen::VectorXd moderated_variances(const Eigen::MatrixXd& samples,
-                                    const Eigen::VectorXd& prior_variances, double prior_freedom);
-
-/// Covariance of one row of samples: moderated variances and one correlation for the whole test.
+/// Covariance of one row of samples: moderated variances (calibrate/moderated_variances.hpp) and
+/// one correlation for the whole test.
 ///
 ///   C_ij = r* sqrt(v*_i v*_j),   r* = (d0 r_prior + df rbar) / (d0 + df),
 ///
 /// rbar the mean sample correlation of the test's pairs (0 where a statistic does not scatter),
 /// r* kept in [0, 0.95]: positive definite at any m, and a test cannot gain by statistics that are
 /// thought to cancel. With m (m - 1) / 2 entries and n - 1 rows a free matrix would be singular.
+/// Plug-in variances turn a nominal 5 % test of the largest score into 28 % false alarms, moderated
+/// ones into 6 % (docs/theory/diagnosis.md).
+/// @shape samples (rows, m), prior_variances (m)
 Eigen::MatrixXd moderated_covariance(const Eigen::MatrixXd& samples,
                                      const Eigen::VectorXd& prior_variances, double prior_freedom,
                                      double prior_correlation);

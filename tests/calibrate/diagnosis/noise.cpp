@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
+#include "calibrate/moderated_variances.hpp"
 #include "tests/calibrate/diagnosis/small_models.hpp"
 
 using Catch::Matchers::WithinAbs;
@@ -27,11 +28,12 @@ TEST_CASE("Noise: a variance is the mean of prior and sample, weighted by degree
           "[calibrate][diagnosis]") {
   Eigen::MatrixXd samples(3, 2);
   samples << 1.0, 5.0, 2.0, 5.0, 3.0, 5.0;  // variances 1 and 0 with 2 degrees of freedom
-  const Eigen::VectorXd v = moderated_variances(samples, Eigen::Vector2d(4.0, 4.0), 8.0);
+  const Eigen::VectorXd v =
+      moderated_variances(samples.transpose(), Eigen::Vector2d(4.0, 4.0), 8.0);
   REQUIRE_THAT(v[0], WithinRel((8.0 * 4.0 + 2.0 * 1.0) / 10.0, 1e-14));
   // Specimens that agree by chance do not make a statistic exact.
   REQUIRE_THAT(v[1], WithinRel(3.2, 1e-14));
-  REQUIRE_THAT(moderated_variances(samples, Eigen::Vector2d(4.0, 4.0), 0.0)[0],
+  REQUIRE_THAT(moderated_variances(samples.transpose(), Eigen::Vector2d(4.0, 4.0), 0.0)[0],
                WithinRel(1.0, 1e-14));
 }
 

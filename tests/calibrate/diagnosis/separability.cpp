@@ -115,3 +115,22 @@ TEST_CASE("Separability: the next experiment is the one that parts the contender
                            {experiment("apart", 0.0, 4.0, 1.0)})
               .empty());
 }
+
+TEST_CASE("Separability: where no single experiment shows both, the mean decides",
+          "[calibrate][diagnosis]") {
+  LinearModel blind = two_effects(1.0, 0.5);
+  blind.fingerprints.setZero();
+  PossibleExperiment nothing{"nothing", {}, Eigen::MatrixXd::Identity(1, 1), 1.0};
+  nothing.model.statistics = {{"x", "x"}};
+  nothing.model.jacobian.resize(1, 0);
+  nothing.model.fingerprints = Eigen::MatrixXd::Zero(1, 2);
+  PossibleExperiment one = nothing;
+  one.name = "one";
+  one.model.fingerprints(0, 0) = 1.0;
+  const auto advice = next_experiments(blind, Eigen::MatrixXd::Identity(2, 2), {0, 1},
+                                       Eigen::Vector2d::Ones(), {nothing, one});
+  REQUIRE(advice[0].name == "one");
+  REQUIRE(advice[0].gain_per_cost == 0.0);
+  // Effect 0 true: lambda 1, rho 0; effect 1 true: lambda 0.
+  REQUIRE_THAT(advice[0].mean_gain_per_cost, WithinRel(0.5, 1e-12));
+}

@@ -204,27 +204,30 @@ TEST_CASE("Toy: draught and tracers alone name nothing", "[calibrate][diagnosis]
 
 TEST_CASE("Toy: the laboratory is the next experiment for what draught cannot separate",
           "[calibrate][diagnosis][toy]") {
-  // Adhesion and particle size in the field data; laboratory tests and refinement are on offer.
   const Toy field(ToyData::field);
   const Toy all(ToyData::extras);
   const Eigen::MatrixXd v = all.usual_covariance();
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(v.rows());
-  std::vector<PossibleExperiment> offered;
-  for (const char* rig : {"unconfined_compression", "brazilian", "oedometer", "steel_shear"}) {
-    const EvidenceRows rows =
-        selected_rows(all.exact_model(), nothing, v, rows_of(all.exact_model(), rig));
-    offered.push_back({rig, rows.model, rows.covariance, 1.0});
-  }
+  const auto offer = [&](const std::string& name, const std::vector<std::string>& rigs) {
+    std::vector<Eigen::Index> rows;
+    for (const std::string& rig : rigs)
+      for (const Eigen::Index i : rows_of(all.exact_model(), rig)) rows.push_back(i);
+    const EvidenceRows part = selected_rows(all.exact_model(), nothing, v, rows);
+    return PossibleExperiment{name, part.model, part.covariance, 1.0};
+  };
   const auto k = [&](const std::string& id) {
     return static_cast<std::size_t>(std::ranges::find(all.ids(), id) - all.ids().begin());
   };
-  const auto advice = next_experiments(field.exact_model(), field.usual_covariance(),
-                                       {k("tool_adhesion"), k("plastic_contact")},
-                                       Eigen::VectorXd::Ones(all.num_effects()), offered);
-  // No single test shows both, so the least separation stays zero; the mean decides. Tension tests
-  // show neither of the two.
-  REQUIRE(advice.front().name == "steel_shear");
-  REQUIRE(advice.front().mean_gain_per_cost > 0.0);
-  REQUIRE(advice.back().name == "brazilian");
-  REQUIRE_THAT(advice.back().mean_gain_per_cost, Catch::Matchers::WithinAbs(0.0, 1e-9));
+  const auto advice = next_experiments(
+      field.exact_model(), field.usual_covariance(), {k("tool_adhesion"), k("plastic_contact")},
+      Eigen::VectorXd::Ones(all.num_effects()),
+      {offer("tension", {"brazilian"}),
+       offer("laboratory",
+             {"unconfined_compression", "direct_shear", "oedometer", "steel_shear"})});
+  // Draught and tracers alone: nothing of either is left. Tension tests see neither.
+  REQUIRE(advice[0].name == "laboratory");
+  REQUIRE_THAT(advice[0].separation_before, Catch::Matchers::WithinAbs(0.0, 1e-9));
+  REQUIRE(advice[0].separation_after > 5.4);
+  REQUIRE(advice[0].ordering_after > 0.95);
+  REQUIRE_THAT(advice[1].separation_after, Catch::Matchers::WithinAbs(0.0, 1e-9));
 }
