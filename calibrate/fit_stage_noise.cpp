@@ -5,20 +5,14 @@
 #include <map>
 
 #include "calibrate/fit_stages.hpp"
+#include "calibrate/moderated_variances.hpp"
 #include "calibrate/seed_average.hpp"
 
 namespace tilth {
 namespace {
 
-// Weight of the pooled variance, in degrees of freedom: with a handful of seeds a single variance
-// is known to a factor of two at best.
+// Weight of the pooled variance, in degrees of freedom.
 constexpr double prior_freedom = 8.0;
-
-Eigen::VectorXd sample_variance(const Eigen::MatrixXd& samples) {
-  if (samples.cols() < 2) return Eigen::VectorXd::Zero(samples.rows());
-  const Eigen::MatrixXd rest = samples.colwise() - samples.rowwise().mean();
-  return rest.rowwise().squaredNorm() / static_cast<double>(samples.cols() - 1);
-}
 
 // A statistic read from at least three fitted tests is pooled over them; the rest over each other.
 constexpr std::size_t own_pool = 3;
@@ -40,7 +34,7 @@ double pooling_scale(const Target& target, const std::string& pool, double mean)
 
 // Mean variance of the fitted targets of each pool, brought back to each target's scale.
 Eigen::VectorXd pooled_variance(const FitContext& context, const Eigen::MatrixXd& samples) {
-  const Eigen::VectorXd variance = sample_variance(samples);
+  const Eigen::VectorXd variance = sample_variances(samples);
   std::vector<std::string> pool;
   Eigen::VectorXd scale(samples.rows());
   for (std::size_t k = 0; k < context.targets.size(); ++k) {
@@ -87,13 +81,12 @@ Eigen::MatrixXd moderated_correlation(const FitContext& context, const Eigen::Ma
 }  // namespace
 
 Eigen::VectorXd moderated_variance(const Eigen::MatrixXd& samples, const Eigen::VectorXd& prior) {
-  const auto freedom = static_cast<double>(std::max<Eigen::Index>(0, samples.cols() - 1));
-  return (prior_freedom * prior + freedom * sample_variance(samples)) / (prior_freedom + freedom);
+  return moderated_variances(samples, prior, prior_freedom);
 }
 
 Eigen::VectorXd holdout_variance(const FitContext& context, const Eigen::MatrixXd& samples,
                                  const Eigen::VectorXd& fitted_variance) {
-  Eigen::VectorXd prior = sample_variance(samples);
+  Eigen::VectorXd prior = sample_variances(samples);
   for (std::size_t target = 0; target < context.targets.size(); ++target) {
     double sum = 0.0;
     int count = 0;

@@ -3,6 +3,21 @@ list(
   APPEND
   TILTH_TEST_SOURCES
   calibrate/csv_table.cpp
+  calibrate/diagnosis/effect_directions.cpp
+  calibrate/diagnosis/effect_scores.cpp
+  calibrate/diagnosis/gap_detection.cpp
+  calibrate/diagnosis/gap_location.cpp
+  calibrate/diagnosis/gap_size.cpp
+  calibrate/diagnosis/misra_ladder.cpp
+  calibrate/diagnosis/naming_support.cpp
+  calibrate/diagnosis/noise.cpp
+  calibrate/diagnosis/normal_probability.cpp
+  calibrate/diagnosis/posterior.cpp
+  calibrate/diagnosis/projection.cpp
+  calibrate/diagnosis/separability.cpp
+  calibrate/diagnosis/toy.cpp
+  calibrate/diagnosis/verdict.cpp
+  support/diagnosis_toy.cpp
   calibrate/effective_sample_size.cpp
   calibrate/draught_band.cpp
   calibrate/emulator.cpp
