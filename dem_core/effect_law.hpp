@@ -36,7 +36,7 @@ std::vector<std::string> problems(const EffectLaw& law);
 inline constexpr double attraction_range_over_radius = 0.1;
 
 /// Tributary area of a grain's contact on a tool over the square of its radius; see effects.md, 6.
-inline constexpr double tool_area_over_radius2 = 4.8;
+inline constexpr double tool_area_over_radius2 = 4.3;
 
 /// Largest secant stiffness of a contact over its baseline: what the stable time step must allow for.
 ///   4 where m > 0 (stiffening_factor is cut there), times 1 / (1 - lambda)

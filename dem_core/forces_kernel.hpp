@@ -38,11 +38,15 @@ TILTH_INLINE double contact_area_m2(const StepView& view, std::int64_t i, std::i
   return 3.14159265358979323846 * r * r;
 }
 
-/// Contacts that end forget what effects remembered.
-template <int W>
-TILTH_INLINE void clear_effects(const StepView& view, std::int64_t p) {
-  Pack<W>::all(0.0).store(view.pair_effects + p * 2 * W);
-  Pack<W>::all(0.0).store(view.pair_effects + (p * 2 + 1) * W);
+/// A contact that has ended in every lane forgets its springs and what effects remembered.
+template <int W, bool HasRolling, bool HasEffects>
+TILTH_INLINE void clear_memory(const StepView& view, std::int64_t p, double* spring_m) {
+  if (HasRolling && view.touching[p]) Pack3<W>::zero().store(view.pair_rolling_rad + p * 3 * W);
+  if (HasEffects && view.touching[p]) {
+    Pack<W>::all(0.0).store(view.pair_effects + p * 2 * W);
+    Pack<W>::all(0.0).store(view.pair_effects + (p * 2 + 1) * W);
+  }
+  clear_spring<W>(spring_m, view.touching[p]);
 }
 
 template <int W>
@@ -86,9 +90,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
     if (bonded) near = near & !(P::load(bond + 7 * W) > P::all(0.5));
   }
   if (!any_bond && !any(touching) && !(HasEffects && any(near))) {
-    if (HasEffects && view.touching[p]) clear_effects<W>(view, p);
-    if (HasRolling && view.touching[p]) Pack3<W>::zero().store(view.pair_rolling_rad + p * 3 * W);
-    clear_spring<W>(spring_m, view.touching[p]);
+    clear_memory<W, HasRolling, HasEffects>(view, p, spring_m);
     return;
   }
   const Pack3<W> velocity_b = Pack3<W>::load(view.motion + j * 9 * W + 3 * W);
@@ -131,8 +133,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
                                   spin_b - a.spin, a.spin + spin_b},
                                  view.pair_rolling_rad + p * 3 * W);
   } else {
-    if (HasEffects && view.touching[p]) clear_effects<W>(view, p);
-    clear_spring<W>(spring_m, view.touching[p]);
+    clear_memory<W, HasRolling, HasEffects>(view, p, spring_m);
   }
   if constexpr (HasEffects) {
     if (any(near))
