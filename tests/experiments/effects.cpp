@@ -57,14 +57,14 @@ ExperimentResult with_effects(const SoilEffects& effects, const auto& run) {
 TEST_CASE("Bond heterogeneity: the quantile has mean 1 and the asked-for scatter", "[experiments][effects]") {
   for (const double cv : {0.05, 0.3, 0.8}) {
     double mean = 0, square = 0;
-    const int n = 200000;
+    const int n = 5000;
     for (int k = 0; k < n; ++k) {
       const double w = weibull_quantile((k + 0.5) / n, cv);
       mean += w / n;
       square += w * w / n;
     }
-    // midpoint rule: the tail beyond the last point is worth some 1e-5 of the square
-    REQUIRE_THAT(mean, WithinRel(1.0, 1e-4));
+    // midpoint rule: the tail beyond the last point is worth some 1e-4 of the mean
+    REQUIRE_THAT(mean, WithinRel(1.0, 5e-4));
     REQUIRE_THAT(std::sqrt(square - mean * mean) / mean, WithinRel(cv, 2e-3));
   }
 }
