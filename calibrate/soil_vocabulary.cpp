@@ -8,6 +8,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "calibrate/effect_catalogue.hpp"
+
 namespace tilth {
 namespace {
 
@@ -122,6 +124,14 @@ SoilVocabulary built_in() {
   return words;
 }
 
+/// The parameters of candidate missing effects, which data/effects.json alone lists.
+SoilVocabulary with_effects(SoilVocabulary words) {
+  for (const Effect& effect : effect_catalogue())
+    for (const EffectParameter& p : effect.parameters)
+      if (!words.parameter(p.name)) words.parameters.push_back({p.name, p.lower, p.upper});
+  return words;
+}
+
 struct OtherUnit {
   const char* suffix;  ///< as people write it at the end of a name
   const char* si;      ///< what the name must end in
@@ -161,7 +171,7 @@ bool has_si_unit(std::string_view name) {
 }  // namespace
 
 const SoilVocabulary& soil_vocabulary() {
-  static const SoilVocabulary words = built_in();
+  static const SoilVocabulary words = with_effects(built_in());
   return words;
 }
 

@@ -73,7 +73,7 @@ struct SoilVocabulary {
   const KnownParameter* parameter(std::string_view id) const;
 };
 
-/// The words of this version. The program may add the parameters of missing effects to a copy.
+/// The words of this version, the parameters of the catalogue of effects among them.
 const SoilVocabulary& soil_vocabulary();
 
 /// True when the name ends in a known SI unit suffix or has none that looks like a unit:

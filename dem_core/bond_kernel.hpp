@@ -32,18 +32,22 @@ TILTH_INLINE Mask<W> exceeds(const Pack3<W>& v, Pack<W> factor, Pack<W> rhs) {
   return (rhs < zero) | (dot(v, v) * (factor * factor) > rhs * rhs);
 }
 
-/// One step of one bond; broken lanes give zero and stay broken. `spin_sum` = spin_a + spin_b.
+/// What a bond would carry if it held.
 template <int W>
-TILTH_INLINE BondForce<W> bond_force(const Law<W>& law, const BondGeometry& g,
-                                     const Encounter<W>& e, const Pack3<W>& spin_difference,
-                                     const Pack3<W>& spin_sum, double* bond, double* num_broken) {
-  using P = Pack<W>;
-  const P zero = P::all(0.0);
-  const P one = P::all(1.0);
-  const P dt = law[law_dt];
-  const Mask<W> held = P::load(bond + 7 * W) > P::all(0.5);
-  const P turn = (P::all(0.5) * dt) * dot(spin_sum, e.normal);
+struct BondTrial {
+  Pack<W> push;  ///< on b along the normal, positive pushes apart
+  Pack3<W> shear, bending;
+  Pack<W> twisting;
+};
 
+/// `spin_sum` = spin_a + spin_b.
+template <int W>
+TILTH_INLINE BondTrial<W> bond_trial(const Law<W>& law, const BondGeometry& g,
+                                     const Encounter<W>& e, const Pack3<W>& spin_difference,
+                                     const Pack3<W>& spin_sum, const double* bond) {
+  using P = Pack<W>;
+  const P dt = law[law_dt];
+  const P turn = (P::all(0.5) * dt) * dot(spin_sum, e.normal);
   const P push = (law[law_bond_normal] * P::all(g.normal_factor)) *
                  (P::all(g.rest_length_m) - e.distance);
   const Pack3<W> shear = carried(Pack3<W>::load(bond), e.normal, turn) +
@@ -54,29 +58,61 @@ TILTH_INLINE BondForce<W> bond_force(const Law<W>& law, const BondGeometry& g,
                            (law[law_bond_bending] * P::all(g.bending_factor) * dt) * bend_rate;
   const P twisting = P::load(bond + 6 * W) +
                      (law[law_bond_twisting] * P::all(g.twisting_factor) * dt) * twist_rate;
+  return {push, shear, bending, twisting};
+}
 
-  const P pressure = push * P::all(g.inverse_area);  // compression positive
-  const Mask<W> torn = exceeds(bending, law[law_bending_in_tension] * P::all(g.bending_per_area),
-                               law[law_tensile_limit] + pressure);
-  const P shear_room = law[law_cohesion_limit] + law[law_tan_friction] * pressure -
-                       abs(twisting) * (law[law_twisting_in_shear] * P::all(g.twisting_per_area));
-  const Mask<W> sheared = exceeds(shear, P::all(g.inverse_area), shear_room);
+/// Torn or sheared; pressures are compression positive.
+template <int W>
+TILTH_INLINE Mask<W> bond_fails(const Law<W>& law, const BondGeometry& g, const BondTrial<W>& t,
+                                Pack<W> tensile_limit, Pack<W> cohesion_limit, Pack<W> pressure,
+                                Pack<W> pressure_in_shear) {
+  using P = Pack<W>;
+  const Mask<W> torn = exceeds(t.bending, law[law_bending_in_tension] * P::all(g.bending_per_area),
+                               tensile_limit + pressure);
+  const P shear_room =
+      cohesion_limit + law[law_tan_friction] * pressure_in_shear -
+      abs(t.twisting) * (law[law_twisting_in_shear] * P::all(g.twisting_per_area));
+  return torn | exceeds(t.shear, P::all(g.inverse_area), shear_room);
+}
+
+/// Breaks the bonds in `fails` that hold in active lanes, stores what the others remember, and gives their
+/// forces; broken lanes give zero and stay broken.
+template <int W>
+TILTH_INLINE BondForce<W> settle_bond(const Law<W>& law, const BondTrial<W>& t,
+                                      const Encounter<W>& e, Mask<W> fails, double* bond,
+                                      double* num_broken) {
+  using P = Pack<W>;
+  const P zero = P::all(0.0);
+  const P one = P::all(1.0);
+  const Mask<W> held = P::load(bond + 7 * W) > P::all(0.5);
   const Mask<W> active = law[law_active] > P::all(0.5);
-  const Mask<W> breaks = (torn | sheared) & held & active;
+  const Mask<W> breaks = fails & held & active;
   if (any(breaks)) {
     (P::load(num_broken) + select(breaks, one, zero)).store(num_broken);
   }
   const Mask<W> holds = held & !breaks;
   const Pack3<W> none = Pack3<W>::zero();
-  const Pack3<W> shear_now = select(holds, shear, none);
-  const Pack3<W> bending_now = select(holds, bending, none);
-  const P twisting_now = select(holds, twisting, zero);
+  const Pack3<W> shear_now = select(holds, t.shear, none);
+  const Pack3<W> bending_now = select(holds, t.bending, none);
+  const P twisting_now = select(holds, t.twisting, zero);
   shear_now.store(bond);
   bending_now.store(bond + 3 * W);
   twisting_now.store(bond + 6 * W);
   select(holds, one, zero).store(bond + 7 * W);
-  return {select(holds, push, zero), shear_now, bending_now + twisting_now * e.normal, breaks,
-          shear};
+  return {select(holds, t.push, zero), shear_now, bending_now + twisting_now * e.normal, breaks,
+          t.shear};
+}
+
+/// One step of one bond.
+template <int W>
+TILTH_INLINE BondForce<W> bond_force(const Law<W>& law, const BondGeometry& g,
+                                     const Encounter<W>& e, const Pack3<W>& spin_difference,
+                                     const Pack3<W>& spin_sum, double* bond, double* num_broken) {
+  const BondTrial<W> t = bond_trial(law, g, e, spin_difference, spin_sum, bond);
+  const Pack<W> pressure = t.push * Pack<W>::all(g.inverse_area);
+  const Mask<W> fails = bond_fails(law, g, t, law[law_tensile_limit], law[law_cohesion_limit],
+                                   pressure, pressure);
+  return settle_bond(law, t, e, fails, bond, num_broken);
 }
 
 }  // namespace tilth::lanes

@@ -33,23 +33,26 @@ struct ContactForce {
 };
 
 /// Linear spring-dashpot with Coulomb slip and history; see contact_law.hpp.
-/// `touching` lanes only; the others get zero force and an emptied spring.
-template <int W>
+/// `touching` lanes only; the others get zero force and an emptied spring. `elastic` is the static
+/// normal force, k_n d in the baseline; k_n also gives the shear stiffness. HasShearRoom: the limit of
+/// the tangential force is `shear_room` above Coulomb's.
+template <int W, bool HasShearRoom = false>
 TILTH_INLINE ContactForce<W> contact_force(const Law<W>& law, Pack<W> friction, Mask<W> touching,
-                                           Pack<W> overlap, Pack<W> normal_stiffness,
+                                           Pack<W> elastic, Pack<W> normal_stiffness,
                                            Pack<W> damping_factor, const Encounter<W>& e,
-                                           double* spring_m) {
+                                           double* spring_m,
+                                           Pack<W> shear_room = Pack<W>::all(0.0)) {
   using P = Pack<W>;
   const P zero = P::all(0.0);
-  const P normal = normal_stiffness * overlap +
-                   damping_factor * law[law_normal_damping] * e.closing_speed;
+  const P normal = elastic + damping_factor * law[law_normal_damping] * e.closing_speed;
   // The spring is carried along with the contact plane: what leaves the plane is projected out.
   Pack3<W> spring = Pack3<W>::load(spring_m) + law[law_dt] * e.sliding_velocity;
   spring = spring - dot(spring, e.normal) * e.normal;
   const P shear_stiffness = normal_stiffness * law[law_shear_ratio];
   const Pack3<W> dashpot = (damping_factor * law[law_tangential_damping]) * e.sliding_velocity;
   Pack3<W> tangential = shear_stiffness * spring + dashpot;
-  const P limit = friction * select(normal > zero, normal, zero);
+  P limit = friction * select(normal > zero, normal, zero);
+  if constexpr (HasShearRoom) limit = limit + shear_room;
   const P squared = dot(tangential, tangential);
   const Mask<W> slipping = (squared > limit * limit) & touching;
   if (any(slipping)) {

@@ -56,7 +56,7 @@ ContactResponse contact_law(const ContactConstants& constants, const ContactMoti
                               pack(motion.sliding_velocity_m_per_s)};
   std::array<double, 3> spring = {spring_m.x(), spring_m.y(), spring_m.z()};
   const lanes::ContactForce<1> f =
-      lanes::contact_force<1>(law, law[lanes::law_friction], {motion.overlap_m > 0}, {motion.overlap_m},
+      lanes::contact_force<1>(law, law[lanes::law_friction], {motion.overlap_m > 0}, {constants.normal_stiffness_N_per_m * motion.overlap_m},
                               {constants.normal_stiffness_N_per_m}, {1.0}, e, spring.data());
   return {f.normal.v, unpack(f.tangential), Vec3(spring[0], spring[1], spring[2])};
 }

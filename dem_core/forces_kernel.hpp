@@ -3,6 +3,7 @@
 // The loop over pairs. Pairs are visited in (i, j) order, so sums never depend on the list's length.
 #pragma once
 
+#include "dem_core/bond_effects_kernel.hpp"
 #include "dem_core/bond_kernel.hpp"
 #include "dem_core/contact_kernel.hpp"
 #include "dem_core/records.hpp"
@@ -31,10 +32,34 @@ TILTH_INLINE double rolling_radius_m(const StepView& view, std::int64_t i, std::
   return view.radius_m[i] * view.radius_m[j] / (view.radius_m[i] + view.radius_m[j]);
 }
 
+/// Section of two grains' contact, that of the smaller one.
+TILTH_INLINE double contact_area_m2(const StepView& view, std::int64_t i, std::int64_t j) {
+  const double r = view.radius_m[i] < view.radius_m[j] ? view.radius_m[i] : view.radius_m[j];
+  return 3.14159265358979323846 * r * r;
+}
+
+/// A contact that has ended in every lane forgets its springs and what effects remembered.
+template <int W, bool HasRolling, bool HasEffects>
+TILTH_INLINE void clear_memory(const StepView& view, std::int64_t p, double* spring_m) {
+  if (HasRolling && view.touching[p]) Pack3<W>::zero().store(view.pair_rolling_rad + p * 3 * W);
+  if (HasEffects && view.touching[p]) {
+    Pack<W>::all(0.0).store(view.pair_effects + p * 2 * W);
+    Pack<W>::all(0.0).store(view.pair_effects + (p * 2 + 1) * W);
+  }
+  clear_spring<W>(spring_m, view.touching[p]);
+}
+
+template <int W>
+TILTH_INLINE BondExtras bond_extras(const StepView& view, std::int64_t bond) {
+  return {view.bond_strength ? view.bond_strength + bond * W : nullptr,
+          view.bond_worst + bond * W};
+}
+
 /// Force on j and the moments of one listed pair (i, j), added to both bodies. HasBonds = false leaves
-/// the bond and HasRolling = false the rolling spring out of the code; the bits are those of a model
-/// without bonds, and of lanes without rolling friction, either way.
-template <int W, bool HasBonds, bool HasRolling>
+/// the bond, HasRolling = false the rolling spring and HasEffects = false the laws of effect_law.hpp out
+/// of the code; the bits are those of a model without bonds, and of lanes without rolling friction or
+/// effects, either way.
+template <int W, bool HasBonds, bool HasRolling, bool HasEffects>
 TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
                              Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t i,
                              std::int64_t p) {
@@ -57,9 +82,15 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
     unbonded = unbonded & !holds;
     if (!view.contact_beside_bond) touching = touching & !holds;
   }
-  if (!any_bond && !any(touching)) {
-    if (HasRolling && view.touching[p]) Pack3<W>::zero().store(view.pair_rolling_rad + p * 3 * W);
-    clear_spring<W>(spring_m, view.touching[p]);
+  // Lanes that attract from a distance; where no bond is in the way.
+  Mask<W> near = touching;
+  if constexpr (HasEffects) {
+    const P reach = reference + P::all(2 * attraction_range_over_radius * rolling_radius_m(view, i, j));
+    near = (squared < reach * reach) & attracting(law);
+    if (bonded) near = near & !(P::load(bond + 7 * W) > P::all(0.5));
+  }
+  if (!any_bond && !any(touching) && !(HasEffects && any(near))) {
+    clear_memory<W, HasRolling, HasEffects>(view, p, spring_m);
     return;
   }
   const Pack3<W> velocity_b = Pack3<W>::load(view.motion + j * 9 * W + 3 * W);
@@ -80,10 +111,18 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   Pack3<W> tangential = Pack3<W>::zero();
   Pack3<W> moment = Pack3<W>::zero();
   if (any(touching)) {
-    const P stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor);
-    const ContactForce<W> f =
-        contact_force(law, law[law_friction], touching, reference - e.distance, stiffness,
-                      P::all(pair.damping_factor), e, spring_m);
+    P stiffness = law[law_contact_stiffness] * P::all(pair.stiffness_factor);
+    const P overlap = reference - e.distance;
+    P elastic = P::all(0.0);
+    if constexpr (HasEffects) {
+      const double area_m2 = contact_area_m2(view, i, j);
+      stiffness = stiffened<W>(law, touching, stiffness, overlap, area_m2);
+      elastic = yielding_push<W>(law, touching, stiffness, overlap, area_m2, view.pair_effects + p * 2 * W);
+    } else {
+      elastic = stiffness * overlap;
+    }
+    const ContactForce<W> f = contact_force<W>(law, law[law_friction], touching, elastic, stiffness,
+                                               P::all(pair.damping_factor), e, spring_m);
     push = f.normal;
     tangential = f.tangential;
     view.touching[p] = 1;
@@ -94,11 +133,22 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
                                   spin_b - a.spin, a.spin + spin_b},
                                  view.pair_rolling_rad + p * 3 * W);
   } else {
-    clear_spring<W>(spring_m, view.touching[p]);
+    clear_memory<W, HasRolling, HasEffects>(view, p, spring_m);
+  }
+  if constexpr (HasEffects) {
+    if (any(near))
+      push = push - attraction<W>(law, near, unbonded, e.distance - reference,
+                                  rolling_radius_m(view, i, j), view.pair_effects + (p * 2 + 1) * W);
   }
   if (any_bond) {
-    const BondForce<W> f = bond_force(law, view.bond_geometry[pair.bond], e,
-                                      spin_b - a.spin, a.spin + spin_b, bond, view.num_broken);
+    BondForce<W> f;
+    if constexpr (HasEffects)
+      f = bond_force_with_effects(law, view.bond_geometry[pair.bond], e, spin_b - a.spin,
+                                  a.spin + spin_b, bond, view.num_broken,
+                                  bond_extras<W>(view, pair.bond));
+    else
+      f = bond_force(law, view.bond_geometry[pair.bond], e, spin_b - a.spin, a.spin + spin_b, bond,
+                     view.num_broken);
     push = push + f.normal;
     tangential = tangential + f.tangential;
     moment = HasRolling ? moment + f.moment : f.moment;
@@ -120,7 +170,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   (Pack3<W>::load(force_b + 3 * W) + (arm_b * turning - moment)).store(force_b + 3 * W);
 }
 
-template <int W, bool HasBonds, bool HasRolling>
+template <int W, bool HasBonds, bool HasRolling, bool HasEffects = false>
 TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law) {
   for (std::int64_t i = 0; i < view.num_particles; ++i) {
     const std::int64_t begin = view.row_begin[i];
@@ -131,7 +181,7 @@ TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law
     Pack3<W> force = Pack3<W>::load(store);
     Pack3<W> torque = Pack3<W>::load(store + 3 * W);
     for (std::int64_t p = begin; p < end; ++p)
-      pair_force<W, HasBonds, HasRolling>(view, law, a, force, torque, i, p);
+      pair_force<W, HasBonds, HasRolling, HasEffects>(view, law, a, force, torque, i, p);
     force.store(store);
     torque.store(store + 3 * W);
   }

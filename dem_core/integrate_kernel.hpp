@@ -65,7 +65,17 @@ void step_lanes(const StepView& view) {
   const Law<W> law(view.law);
   if (view.has_rolling) accumulate_forces<W, true>(view, law);
   else accumulate_forces<W, false>(view, law);
-  if (view.num_tools > 0) accumulate_tool_forces(view, law);
+  if (view.num_tools > 0) accumulate_tool_forces<W>(view, law);
+  integrate(view, law);
+}
+
+/// One variant only, for it is the rare one: with bonds and rolling springs, whether there are any or not.
+template <int W>
+void step_lanes_with_effects(const StepView& view) {
+  const Law<W> law(view.law);
+  accumulate_pair_forces<W, true, true, true>(view, law);
+  accumulate_wall_forces<W, true, true>(view, law);
+  if (view.num_tools > 0) accumulate_tool_forces<W, true>(view, law);
   integrate(view, law);
 }
 

@@ -41,6 +41,8 @@ void check_lane(const LaneLaw& law, std::size_t lane, std::vector<std::string>& 
   require(law.local_damping >= 0 && law.local_damping < 1, "local_damping", law.local_damping,
           "in [0, 1)");
   require(std::isfinite(law.dt_s) && law.dt_s > 0, "dt_s", law.dt_s, "> 0");
+  for (const std::string& sentence : problems(law.effects))
+    found.push_back(fmt::format("lane {}: {}", lane, sentence));
 }
 
 }  // namespace
@@ -69,6 +71,15 @@ std::vector<std::string> problems(const Model& model) {
   for (std::size_t w = 0; w < model.walls.size(); ++w)
     if (!(std::abs(model.walls[w].direction.norm() - 1) < 1e-9))
       found.push_back(fmt::format("wall {}: direction must be a unit vector", w));
+  if (!model.bond_strength.empty()) {
+    if (model.bond_strength.size() != model.bonds.size() * model.lanes.size())
+      found.push_back(fmt::format("{} bond strengths for {} bonds in {} lanes",
+                                  model.bond_strength.size(), model.bonds.size(), lanes));
+    if (std::ranges::any_of(model.bond_strength, bad)) found.push_back("a bond_strength is not positive");
+  }
+  for (std::size_t w = 0; w < model.walls.size(); ++w)
+    if (const double scale = model.walls[w].adhesion_scale; !(std::isfinite(scale) && scale >= 0))
+      found.push_back(fmt::format("wall {}: adhesion_scale = {}: must be finite and >= 0", w, scale));
   for (std::size_t w = 0; w < model.walls.size(); ++w)
     if (const double scale = model.walls[w].friction_scale; !(std::isfinite(scale) && scale >= 0))
       found.push_back(fmt::format("wall {}: friction_scale = {}: must be finite and >= 0", w, scale));

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "dem_core/aligned.hpp"
 #include "dem_core/bond.hpp"
+#include "dem_core/effect_law.hpp"
 
 namespace tilth {
 
@@ -41,6 +43,7 @@ struct LaneLaw {
   double tangential_damping = 0.0;     ///< see DampingKind (with m_eff k_n), >= 0
   double local_damping = 0.0;          ///< alpha in F - alpha |F| sign(v), in [0, 1)
   BondLaw bond;                        ///< constants of the bonds, multiplied with BondGeometry
+  EffectLaw effects;                   ///< laws beyond the baseline; null unless asked for
   double dt_s = 0.0;                   ///< time step of this lane, > 0
 };
 
@@ -61,6 +64,7 @@ struct Wall {
   double half_b_m = std::numeric_limits<double>::infinity();
   bool has_edges = true;
   double friction_scale = 1.0;  ///< times wall_friction of the lane: 0 greases this wall alone, >= 0
+  double adhesion_scale = 0.0;  ///< times tool_adhesion_Pa of the lane: 1 makes it a tool's surface, >= 0
 
   bool bounded() const {
     return half_a_m < std::numeric_limits<double>::infinity() ||
@@ -122,6 +126,8 @@ struct Model {
   /// the bond's last shear force, cut back to Coulomb's limit.
   bool contact_beside_bond = true;
   std::vector<BondGeometry> bonds;            ///< sorted by (i, j), i < j
+  /// [bond][lane]: factor on both strengths of a bond, > 0; empty means 1 everywhere.
+  AlignedDoubles bond_strength;
   std::vector<ReferenceDistance> references;  ///< sorted by (i, j), i < j
   std::vector<WallReference> wall_references;
   std::vector<Wall> walls;

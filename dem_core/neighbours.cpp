@@ -105,26 +105,26 @@ double largest_radius_m(const Model& model) {
 struct Rows {
   std::vector<std::vector<Index>> partners;
 
-  Rows(const Model& model, const State& state, double skin_m) : partners(model.radius_m.size()) {
+  Rows(const Model& model, const State& state, double margin_m) : partners(model.radius_m.size()) {
     for (const BondGeometry& b : model.bonds) partners[as_size(b.i)].push_back(b.j);
     // a reference distance may exceed the radii: such pairs are always listed
     for (const ReferenceDistance& r : model.references)
       if (r.distance_m > model.radius_m[as_size(r.i)] + model.radius_m[as_size(r.j)])
         partners[as_size(r.i)].push_back(r.j);
     for (int lane = 0; lane < state.num_lanes; ++lane)
-      if (state.active[as_size(lane)]) add_lane(model, state, skin_m, lane);
+      if (state.active[as_size(lane)]) add_lane(model, state, margin_m, lane);
     for (auto& row : partners) {
       std::ranges::sort(row);
       row.erase(std::unique(row.begin(), row.end()), row.end());
     }
   }
 
-  void add_lane(const Model& model, const State& state, double skin_m, int lane) {
+  void add_lane(const Model& model, const State& state, double margin_m, int lane) {
     const std::vector<Vec3> x = lane_positions(state, model.num_particles(), lane);
-    const Grid grid(x, 2 * largest_radius_m(model) + skin_m);
+    const Grid grid(x, 2 * largest_radius_m(model) + margin_m);
     grid.for_each_candidate(x, [&](Index i, Index j) {
       if (j < model.num_fixed) return;  // i < j: neither moves
-      const double reach = model.radius_m[as_size(i)] + model.radius_m[as_size(j)] + skin_m;
+      const double reach = model.radius_m[as_size(i)] + model.radius_m[as_size(j)] + margin_m;
       if ((x[as_size(j)] - x[as_size(i)]).squaredNorm() < reach * reach)
         partners[as_size(i)].push_back(j);
     });
@@ -149,16 +149,21 @@ PairRecord pair_record(const Model& model, Index i, Index j) {
           .arm_offset_m = 0.5 * (ri - rj)};
 }
 
-/// Takes the vector of contact k over as that of contact m; nothing where there is no such memory.
+/// Takes the memory of contact k over as that of contact m; nothing where there is no such memory.
+void copy_memory(const AlignedDoubles& from, std::size_t k, AlignedDoubles& to, std::size_t m,
+                 std::size_t num_values) {
+  if (from.empty() || to.empty()) return;
+  std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(k * num_values), num_values,
+              to.begin() + static_cast<std::ptrdiff_t>(m * num_values));
+}
+
 void copy_spring(const AlignedDoubles& from, std::size_t k, AlignedDoubles& to, std::size_t m,
                  std::size_t lanes) {
-  if (from.empty() || to.empty()) return;
-  std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(k * 3 * lanes), 3 * lanes,
-              to.begin() + static_cast<std::ptrdiff_t>(m * 3 * lanes));
+  copy_memory(from, k, to, m, 3 * lanes);
 }
 
 void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
-  const Rows rows(model, state, workspace.skin_m);
+  const Rows rows(model, state, workspace.list_margin_m);
   const std::size_t lanes = as_size(state.num_lanes);
   ContactMemory fresh;
   fresh.row_begin.assign(rows.partners.size() + 1, 0);
@@ -169,6 +174,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
   fresh.touching.assign(total, 0);
   fresh.spring_m.assign(total * 3 * lanes, 0.0);
   if (workspace.has_rolling) fresh.rolling_rad.assign(total * 3 * lanes, 0.0);
+  if (workspace.has_effects) fresh.effects.assign(total * 2 * lanes, 0.0);
   workspace.pairs.clear();
   workspace.pairs.reserve(total);
   const ContactMemory& old = state.contacts;
@@ -194,6 +200,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
       if (k < k_end && old.partner[k] == j) {
         copy_spring(old.spring_m, k, fresh.spring_m, fresh.partner.size(), lanes);
         copy_spring(old.rolling_rad, k, fresh.rolling_rad, fresh.partner.size(), lanes);
+        copy_memory(old.effects, k, fresh.effects, fresh.partner.size(), 2 * lanes);
         fresh.touching[fresh.partner.size()] = old.touching[k];
       }
       fresh.partner.push_back(j);
@@ -213,7 +220,7 @@ std::vector<const WallReference*> references_of_wall(const Model& model, int wal
 
 bool near_wall(const Model& model, const State& state, const Workspace& workspace, int wall,
                int particle) {
-  const double reach = model.radius_m[as_size(particle)] + workspace.skin_m;
+  const double reach = model.radius_m[as_size(particle)] + workspace.list_margin_m;
   for (int lane = 0; lane < state.num_lanes; ++lane)
     if (state.active[as_size(lane)] &&
         distance_to_reach_wall_m(model, state, wall, state.position_m(particle, lane), lane) < reach)
@@ -268,7 +275,7 @@ void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
 std::vector<Index> near_features(const Model& model, const State& state, const Workspace& workspace,
                                  int tool, int particle, double extent_m) {
   std::vector<Index> found;
-  const double reach_m = model.radius_m[as_size(particle)] + workspace.skin_m;
+  const double reach_m = model.radius_m[as_size(particle)] + workspace.list_margin_m;
   const MeshFeatures& mesh = workspace.tool_features[as_size(tool)];
   for (int lane = 0; lane < state.num_lanes; ++lane) {
     if (!state.active[as_size(lane)]) continue;
@@ -278,7 +285,7 @@ std::vector<Index> near_features(const Model& model, const State& state, const W
     const Vec3 x = to_body_frame(state, tool, state.position_m(particle, lane), lane);
     for (std::size_t f = 0; f < mesh.features.size(); ++f)
       if (feature_distance(mesh, f, x, reach_m, model.tools[as_size(tool)].max_depth_m,
-                           workspace.skin_m))
+                           workspace.list_margin_m))
         found.push_back(static_cast<Index>(f));
   }
   std::ranges::sort(found);

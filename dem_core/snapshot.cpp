@@ -13,7 +13,7 @@ namespace tilth {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-constexpr std::array<char, 8> magic = {'t', 'i', 'l', 't', 'h', 'S', '0', '3'};
+constexpr std::array<char, 8> magic = {'t', 'i', 'l', 't', 'h', 'S', '0', '4'};
 
 /// Visits every array of a State in one fixed order; reading and writing share it.
 template <typename StateRef, typename Visit>
@@ -24,11 +24,13 @@ void for_each_array(StateRef& s, Visit visit) {
   visit(s.contacts.touching);
   visit(s.contacts.spring_m);
   visit(s.contacts.rolling_rad);
+  visit(s.contacts.effects);
   visit(s.wall_contacts.row_begin);
   visit(s.wall_contacts.particle);
   visit(s.wall_contacts.spring_m);
   visit(s.wall_contacts.rolling_rad);
   visit(s.bonds);
+  visit(s.bond_worst);
   visit(s.walls);
   visit(s.wall_force);
   visit(s.tool_contacts.row_begin);

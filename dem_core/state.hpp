@@ -44,6 +44,7 @@ struct ContactMemory {
   AlignedDoubles spring_m;             ///< [pair][3][W]: tangential displacement of j against i
   /// [pair][3][W]: rolling angle of j against i; empty where no lane has rolling friction.
   AlignedDoubles rolling_rad;
+  AlignedDoubles effects;  ///< [pair][2][W]: plastic overlap [m], age [s]; empty where no effect acts
 };
 
 /// Wall contacts near enough to matter, sorted by wall, then particle.
@@ -71,6 +72,7 @@ struct State {
   /// [bond][8][W]: shear force on i (3) [N], bending moment on i (3) [N m], twist moment [N m],
   /// 1 while the bond holds and 0 after it broke.
   AlignedDoubles bonds;
+  AlignedDoubles bond_worst;       ///< [bond][W]: largest utilisation; empty where no effect acts
   AlignedDoubles walls;            ///< [wall][4][W]: position (3) [m], cylinder radius [m]
   /// [wall][6][W]: force on the wall and torque about its point in the last step (servos read it).
   AlignedDoubles wall_force;
@@ -132,7 +134,8 @@ struct State {
 /// Buffers rebuilt from Model and State whenever needed; see step().
 struct Workspace {
   bool prepared = false;
-  bool has_rolling = false;  ///< some lane has rolling friction
+  bool has_rolling = false;  ///< rolling springs are kept: some lane has rolling friction, or effects
+  bool has_effects = false;  ///< some lane has effects, or bonds have strengths of their own
   std::vector<PairRecord> pairs;
   std::vector<WallRecord> wall_pairs;
   std::vector<MeshFeatures> tool_features;
@@ -147,8 +150,8 @@ struct Workspace {
   AlignedDoubles num_broken;           ///< [W], bonds broken since the start
   std::vector<double> moved_m;         ///< per lane: bound on the motion since the list was built
   std::int64_t num_rebuilds = 0;
-  double skin_m = 0.0;
-
+  double skin_m = 0.0;         ///< motion that uses up the list
+  double list_margin_m = 0.0;  ///< gap below which a pair is listed: the skin and the reach of attraction
 };
 
 /// State at rest at the given positions, no contact memory, all bonds holding.

@@ -46,6 +46,17 @@ void write_law(const Model& model, const State& state, Workspace& workspace) {
     put(law_tan_friction, law.bond.tan_friction);
     put(law_bending_in_tension, law.bond.bending_in_tension);
     put(law_twisting_in_shear, law.bond.twisting_in_shear);
+    put(law_bond_softening, law.effects.bond_softening);
+    put(law_rate_strengthening, law.effects.rate_strengthening);
+    put(law_rate_reference, law.effects.rate_reference_per_s);
+    put(law_capillary, law.effects.capillary_Pa);
+    put(law_healing, law.effects.healing_Pa);
+    put(law_healing_time, law.effects.healing_time_s);
+    put(law_tool_adhesion, law.effects.tool_adhesion_Pa);
+    put(law_stiffness_exponent, law.effects.stiffness_exponent);
+    put(law_reference_pressure, law.effects.reference_pressure_Pa);
+    put(law_contact_plasticity, law.effects.contact_plasticity);
+    put(law_crushing_compliance, law.effects.crushing_compliance_per_Pa);
     put(law_active, active ? 1.0 : 0.0);
   }
 }
@@ -70,15 +81,22 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
     workspace.inverse_inertia_per_kg_m2[i] =
         1 / (0.4 * model.mass_kg[i] * model.radius_m[i] * model.radius_m[i]);
   }
-  workspace.has_rolling = std::ranges::any_of(
-      model.lanes, [](const LaneLaw& law) { return law.rolling_friction > 0; });
+  const auto any_lane = [&model](auto has) { return std::ranges::any_of(model.lanes, has); };
+  workspace.has_effects = !model.bond_strength.empty() ||
+                          any_lane([](const LaneLaw& law) { return acts(law.effects); });
+  workspace.has_rolling = workspace.has_effects ||
+                          any_lane([](const LaneLaw& law) { return law.rolling_friction > 0; });
+  if (workspace.has_effects) state.bond_worst.resize(model.bonds.size() * w, 0.0);
+  const double r_max = n == 0 ? 0.0 : *std::ranges::max_element(model.radius_m);
+  const bool attracting = any_lane([](const LaneLaw& law) { return attracts(law.effects); });
+  workspace.list_margin_m =
+      workspace.skin_m + (attracting ? attraction_range_over_radius * r_max : 0.0);
   write_law(model, state, workspace);
   workspace.tool_features.clear();
   workspace.tool_reach_m.clear();
-  const double r_max = n == 0 ? 0.0 : *std::ranges::max_element(model.radius_m);
   for (const Tool& tool : model.tools) {
     workspace.tool_features.push_back(mesh_features(tool.mesh));
-    workspace.tool_reach_m.push_back(tool_extent_m(tool) + r_max + workspace.skin_m);
+    workspace.tool_reach_m.push_back(tool_extent_m(tool) + r_max + workspace.list_margin_m);
   }
   rebuild_neighbours(model, state, workspace);
   workspace.prepared = true;
@@ -192,6 +210,7 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.num_bonds = static_cast<int>(model.bonds.size());
   v.contact_beside_bond = model.contact_beside_bond;
   v.has_rolling = workspace.has_rolling;
+  v.has_effects = workspace.has_effects;
   v.law = workspace.law.data();
   v.motion = state.motion.data();
   v.force = workspace.force.data();
@@ -205,6 +224,9 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.touching = state.contacts.touching.data();
   v.pair_spring_m = state.contacts.spring_m.data();
   v.pair_rolling_rad = state.contacts.rolling_rad.data();
+  v.pair_effects = state.contacts.effects.data();
+  v.bond_strength = model.bond_strength.empty() ? nullptr : model.bond_strength.data();
+  v.bond_worst = state.bond_worst.data();
   v.bond_geometry = model.bonds.data();
   v.bonds = state.bonds.data();
   v.wall_row_begin = state.wall_contacts.row_begin.data();
@@ -246,6 +268,7 @@ std::vector<lanes::WallView> wall_views(const Model& model) {
     v.half_a_m = wall.half_a_m;
     v.half_b_m = wall.half_b_m;
     v.friction_scale = wall.friction_scale;
+    v.adhesion_scale = wall.adhesion_scale;
     views.push_back(v);
   }
   return views;
@@ -262,9 +285,12 @@ std::vector<lanes::ToolView> tool_views(const Model& model, const Workspace& wor
 void dispatch(const lanes::StepView& view, int num_lanes) {
   if (!lanes_supported(num_lanes))
     throw std::invalid_argument("this processor cannot run that many lanes; see widest_lanes()");
-  if (num_lanes == 1) lanes::step_lanes<1>(view);
-  if (num_lanes == 4) lanes::step_lanes<4>(view);
-  if (num_lanes == 8) lanes::step_lanes<8>(view);
+  const auto run = [&view](auto plain, auto with_effects) {
+    view.has_effects ? with_effects(view) : plain(view);
+  };
+  if (num_lanes == 1) run(lanes::step_lanes<1>, lanes::step_lanes_with_effects<1>);
+  if (num_lanes == 4) run(lanes::step_lanes<4>, lanes::step_lanes_with_effects<4>);
+  if (num_lanes == 8) run(lanes::step_lanes<8>, lanes::step_lanes_with_effects<8>);
 }
 
 /// Books time and motion of every active lane; freezes those that ran away.

@@ -68,7 +68,7 @@ ContactMatrices pair_matrices(const Model& model, const LaneLaw& law, int i, int
   const double factor = model.stiffness_kind == StiffnessKind::modulus
                             ? std::numbers::pi * r * r / (ri + rj)
                             : 1.0;
-  return contact_matrices(model, law, factor, mi * mj / (mi + mj), rolling_radius_m(model, i, j));
+  return contact_matrices(model, law, factor * stiffness_bound(law.effects), mi * mj / (mi + mj), rolling_radius_m(model, i, j));
 }
 
 void add_pair(const Model& model, const State& state, std::vector<Load>& sum, int i, int j,

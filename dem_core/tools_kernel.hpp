@@ -63,7 +63,7 @@ TILTH_INLINE Mask<W> within_region(const ToolView& tool, const MeshFeature& feat
   return inside;
 }
 
-template <int W>
+template <int W, bool HasEffects>
 TILTH_INLINE void tool_contact(const StepView& view, const Law<W>& law, const ToolView& tool,
                                const ToolMotion<W>& body, const Pack3<W>& centre, double* load,
                                std::int64_t c) {
@@ -73,10 +73,20 @@ TILTH_INLINE void tool_contact(const StepView& view, const Law<W>& law, const To
   const MeshFeature& feature = tool.features[view.tool_feature[c]];
   double* spring_m = view.tool_spring_m + c * 3 * W;
   const P reference = P::all(record.reference_m);
-  const FeatureMeeting<W> meeting = meet_feature<W>(feature, tool.max_depth_m, centre, reference);
+  P reach = reference;
+  if constexpr (HasEffects)
+    if (any(law[law_tool_adhesion] > P::all(0.0)))
+      reach = reference + P::all(attraction_range_over_radius * view.radius_m[i]);
+  const FeatureMeeting<W> meeting = meet_feature<W>(feature, tool.max_depth_m, centre, reach);
   Mask<W> touching = meeting.near;
   if (any(touching)) touching = within_region(tool, feature, centre, touching);
-  if (!any(touching)) {
+  Adhesion<W> sticky = {touching, P::all(0.0), P::all(0.0)};
+  if constexpr (HasEffects) {
+    sticky = adhesion<W>(law, view.radius_m[i], 1.0, meeting.distance - reference);
+    sticky.near = sticky.near & touching;
+    touching = touching & (meeting.distance < reference);
+  }
+  if (!any(touching) && !(HasEffects && any(sticky.near))) {
     Pack3<W>::zero().store(spring_m);
     return;
   }
@@ -91,25 +101,31 @@ TILTH_INLINE void tool_contact(const StepView& view, const Law<W>& law, const To
   e.closing_speed = P::all(0.0) - opening_speed;
   e.sliding_velocity = relative - opening_speed * e.normal -
                        cross(meeting.distance * Pack3<W>::load(motion + 6 * W), e.normal);
-  const ContactForce<W> f =
-      contact_force(law, law[law_tool_friction], touching, reference - meeting.distance,
-                    law[law_contact_stiffness] * P::all(record.stiffness_factor),
-                    P::all(record.damping_factor), e, spring_m);
+  const P stiffness = law[law_contact_stiffness] * P::all(record.stiffness_factor);
+  const P elastic = stiffness * (reference - meeting.distance);
+  ContactForce<W> f;
+  if constexpr (HasEffects)
+    f = sticky_force(law, law[law_tool_friction], touching, sticky, elastic, stiffness,
+                     P::all(record.damping_factor), e, spring_m);
+  else
+    f = contact_force<W>(law, law[law_tool_friction], touching, elastic, stiffness,
+                         P::all(record.damping_factor), e, spring_m);
   const Pack3<W> none = Pack3<W>::zero();
-  const Pack3<W> on_grain = select(touching, f.normal * e.normal - f.tangential, none);
+  const Mask<W> acting = HasEffects ? touching | sticky.near : touching;
+  const Pack3<W> on_grain = select(acting, f.normal * e.normal - f.tangential, none);
   double* force = view.force + i * 6 * W;
   (Pack3<W>::load(force) + on_grain).store(force);
   const Pack3<W> turning =
-      select(touching, meeting.distance * cross(e.normal, f.tangential), none);
+      select(acting, meeting.distance * cross(e.normal, f.tangential), none);
   (Pack3<W>::load(force + 3 * W) + turning).store(force + 3 * W);
   (Pack3<W>::load(load) - on_grain).store(load);
-  const Pack3<W> torque = select(touching, cross(arm, on_grain), none);
+  const Pack3<W> torque = select(acting, cross(arm, on_grain), none);
   (Pack3<W>::load(load + 3 * W) - torque).store(load + 3 * W);
   const P one = select(touching, P::all(1.0), P::all(0.0));
   (P::load(load + 6 * W) + one).store(load + 6 * W);
 }
 
-template <int W>
+template <int W, bool HasEffects = false>
 TILTH_INLINE void accumulate_tool_forces(const StepView& view, const Law<W>& law) {
   for (int t = 0; t < view.num_tools; ++t) {
     double* load = view.tool_load + static_cast<std::int64_t>(t) * 7 * W;
@@ -123,7 +139,7 @@ TILTH_INLINE void accumulate_tool_forces(const StepView& view, const Law<W>& law
       const std::int64_t i = view.tool_particle[c];
       if (i != last) centre = body.to_body(Pack3<W>::load(view.motion + i * 9 * W));
       last = i;
-      tool_contact(view, law, view.tool_views[t], body, centre, load, c);
+      tool_contact<W, HasEffects>(view, law, view.tool_views[t], body, centre, load, c);
     }
   }
 }

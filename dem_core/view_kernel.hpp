@@ -40,6 +40,17 @@ enum LawRow : int {
   law_tan_friction,
   law_bending_in_tension,
   law_twisting_in_shear,
+  law_bond_softening,
+  law_rate_strengthening,
+  law_rate_reference,
+  law_capillary,
+  law_healing,
+  law_healing_time,
+  law_tool_adhesion,
+  law_stiffness_exponent,
+  law_reference_pressure,
+  law_contact_plasticity,
+  law_crushing_compliance,
   law_active,
   num_law_rows
 };
@@ -55,6 +66,7 @@ struct WallView {
   double half_a_m;
   double half_b_m;
   double friction_scale;
+  double adhesion_scale;
 };
 
 /// One tool as the kernel sees it.
@@ -70,6 +82,7 @@ struct StepView {
   int num_bonds;
   bool contact_beside_bond;
   bool has_rolling;  ///< some lane has rolling friction; else the rolling springs are null
+  bool has_effects;  ///< some lane has a law of effect_law.hpp; else the memories of effects are null
   const double* law;
   double* motion;
   double* force;
@@ -83,6 +96,9 @@ struct StepView {
   std::uint8_t* touching;
   double* pair_spring_m;
   double* pair_rolling_rad;
+  double* pair_effects;          ///< [pair][2][W]: plastic overlap, age of the contact
+  const double* bond_strength;   ///< [bond][W], or null
+  double* bond_worst;            ///< [bond][W]
   const BondGeometry* bond_geometry;
   double* bonds;
   const std::int32_t* wall_row_begin;
@@ -111,6 +127,13 @@ struct StepView {
 template <int W>
 void step_lanes(const StepView& view);
 
+/// The same with the laws of effect_law.hpp; lanes at their null values get the bits of step_lanes().
+template <int W>
+void step_lanes_with_effects(const StepView& view);
+
+extern template void step_lanes_with_effects<1>(const StepView&);
+extern template void step_lanes_with_effects<4>(const StepView&);
+extern template void step_lanes_with_effects<8>(const StepView&);
 extern template void step_lanes<1>(const StepView&);
 extern template void step_lanes<4>(const StepView&);
 extern template void step_lanes<8>(const StepView&);

@@ -59,7 +59,7 @@ TILTH_INLINE WallMeeting<W> meet_wall(const WallView& wall, const double* place,
   return {select(at_edge, edge_distance, along), select(at_edge, from_edge, direction)};
 }
 
-template <int W, bool HasRolling>
+template <int W, bool HasRolling, bool HasEffects>
 TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall, std::int64_t c) {
   using P = Pack<W>;
   const std::int64_t i = view.wall_particle[c];
@@ -72,7 +72,12 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const WallMeeting<W> meeting = meet_wall<W>(view.wall_views[wall], place, position);
   const P reference = P::all(record.reference_m);
   const Mask<W> touching = meeting.distance < reference;
-  if (!record.glued && !any(touching)) {
+  Adhesion<W> sticky = {touching, P::all(0.0), P::all(0.0)};
+  if constexpr (HasEffects)
+    sticky = adhesion<W>(law, view.radius_m[i],
+                         record.glued ? 0.0 : view.wall_views[wall].adhesion_scale,
+                         meeting.distance - reference);
+  if (!record.glued && !any(touching) && !(HasEffects && any(sticky.near))) {
     Pack3<W>::zero().store(spring_m);
     if (HasRolling) Pack3<W>::zero().store(view.wall_rolling_rad + c * 3 * W);
     return;
@@ -93,10 +98,15 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   const P stiffness = law[law_contact_stiffness] * P::all(record.stiffness_factor);
   const P damping_factor = P::all(record.damping_factor);
   const P friction = law[law_wall_friction] * P::all(view.wall_views[wall].friction_scale);
-  const ContactForce<W> f =
-      record.glued
-          ? glue_force(law, overlap, stiffness, damping_factor, e, spring_m)
-          : contact_force(law, friction, touching, overlap, stiffness, damping_factor, e, spring_m);
+  ContactForce<W> f;
+  if (record.glued)
+    f = glue_force(law, overlap, stiffness, damping_factor, e, spring_m);
+  else if constexpr (HasEffects)
+    f = sticky_force(law, friction, touching, sticky, stiffness * overlap, stiffness, damping_factor,
+                     e, spring_m);
+  else
+    f = contact_force<W>(law, friction, touching, stiffness * overlap, stiffness, damping_factor, e,
+                         spring_m);
   const Pack3<W> on_grain = f.normal * e.normal - f.tangential;
   double* force = view.force + i * 6 * W;
   (Pack3<W>::load(force) + on_grain).store(force);
@@ -121,14 +131,14 @@ TILTH_INLINE void wall_contact(const StepView& view, const Law<W>& law, int wall
   wall_torque.store(on_wall + 3 * W);
 }
 
-template <int W, bool HasRolling>
+template <int W, bool HasRolling, bool HasEffects = false>
 TILTH_INLINE void accumulate_wall_forces(const StepView& view, const Law<W>& law) {
   for (int wall = 0; wall < view.num_walls; ++wall) {
     double* on_wall = view.wall_force + static_cast<std::int64_t>(wall) * 6 * W;
     Pack3<W>::zero().store(on_wall);
     Pack3<W>::zero().store(on_wall + 3 * W);
     for (std::int64_t c = view.wall_row_begin[wall]; c < view.wall_row_begin[wall + 1]; ++c)
-      wall_contact<W, HasRolling>(view, law, wall, c);
+      wall_contact<W, HasRolling, HasEffects>(view, law, wall, c);
   }
 }
 

@@ -20,6 +20,8 @@ enum Column : std::size_t { depth, force, resistance, broken };
 enum CurveId : std::size_t { penetration, withdrawal };
 enum class Stage { settle, push, draw };
 
+constexpr double standard_speed_m_per_s = 0.03;
+
 double cone_height_m(const ConePenetrationConfig& c) {
   return 0.5 * c.base_diameter_m / std::tan(0.5 * c.apex_angle_rad);
 }
@@ -144,8 +146,13 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                                        const ConePenetrationConfig& config, const Packing& packing,
                                        const RunOptions& options) {
   // 1. bond the packing as it lies and turn gravity on
-  LaneRun run(make_specimen(packing, lanes, chamber(config), {config.bond_gap_over_radius},
-                            {cone_tool(config)}));
+  LaneRun run(make_specimen(
+      packing, lanes, chamber(config),
+      {config.bond_gap_over_radius, {}, {.surface_m = config.bed_height_m}}, {cone_tool(config)}));
+  // A cone of the standard's 30 mm/s strains soil much faster than the laboratory does, at any size.
+  for (int lane = 0; lane < run.num_lanes(); ++lane)
+    set_nominal_rate(run.specimen.model, lane,
+                     laboratory_rate_per_s * config.speed_m_per_s / standard_speed_m_per_s);
   run.specimen.model.gravity_m_per_s2 = -config.gravity_m_per_s2 * Vec3::UnitZ();
   const std::vector<std::string> columns = {"depth_m", "cone_force_N", "cone_resistance_Pa",
                                             "bonds_broken"};

@@ -159,7 +159,11 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                  {"axial_strain", "axial_stress_Pa", "radial_stress_Pa", "bonds_broken"},
                  {}}};
   OedometerProtocol protocol(config, speed_m_per_s);
-  for (int lane = 0; lane < run.num_lanes(); ++lane) protocol.drive(run, lane, 1);
+  for (int lane = 0; lane < run.num_lanes(); ++lane) {
+    set_nominal_rate(run.specimen.model, lane,
+                     speed_m_per_s[static_cast<std::size_t>(lane)] / config.ring_height_m);
+    protocol.drive(run, lane, 1);
+  }
   run_protocol(run, OedometerProtocol::interval_steps, 4'000'000, options.stop, std::ref(protocol));
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];

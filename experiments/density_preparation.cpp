@@ -30,6 +30,10 @@ DensityPreparation::DensityPreparation(double relative_density, double densest_v
 
 void DensityPreparation::start(LaneRun& run, int lane) {
   set_time_step(run, lane, cloud_time_step_s(run.specimen.model, lane));
+  const LaneLaw& law = run.specimen.model.lanes[static_cast<std::size_t>(lane)];
+  own_rolling_friction_ = law.rolling_friction;
+  own_effects_ = law.effects;
+  set_effects(run, lane, 0.0, {});
   set_local_damping(run, lane, preparation_damping);
   press_.start(run, lane);
 }
@@ -59,6 +63,7 @@ bool DensityPreparation::advance(LaneRun& run, int lane) {
   }
   if (stage_ == Stage::densify && densify(run, lane, settled)) {
     set_friction(run, lane, own_friction_);
+    set_effects(run, lane, own_rolling_friction_, own_effects_);
     press_.settle_again();
     stage_ = Stage::settle;
     return false;

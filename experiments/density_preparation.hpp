@@ -26,8 +26,9 @@ struct OwnStates {
 };
 
 /// Prepares one lane: press with its friction (the loosest state is measured on this very specimen),
+/// without rolling friction and effects, which would make it looser and stand for density;
 /// lower ln(friction) by 0.2 per inertial time (isotropic_compression.hpp) until the void ratio is that of the relative density, give
-/// the friction back, settle. Local damping is 0.2 meanwhile. A relative density off by more than 0.25
+/// friction, rolling friction and effects back, settle. Local damping is 0.2 meanwhile. A relative density off by more than 0.25
 /// fails the lane, unless 0.75 or more was asked for and the specimen came to rest without friction: it
 /// is as dense as it gets, and its relative density on the cloud's mean states is reported as it is.
 /// @source own choice; friction as the handle on density is common in DEM work
@@ -49,6 +50,8 @@ class DensityPreparation {
   double relative_density_;
   double own_friction_;
   double own_damping_;
+  double own_rolling_friction_ = 0.0;
+  EffectLaw own_effects_;
   double friction_;
   OwnStates states_;
   IsotropicCompression press_;

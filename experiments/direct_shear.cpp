@@ -94,9 +94,12 @@ class ShearProtocol {
   double area_m2() const { return config_.box_length_m * config_.box_length_m; }
 
   void start(LaneRun& run) const {
-    for (std::size_t k = 0; k < lanes_.size(); ++k)
+    for (std::size_t k = 0; k < lanes_.size(); ++k) {
+      set_nominal_rate(run.specimen.model, static_cast<int>(k),
+                       speed_m_per_s(k) / config_.box_height_m);
       hold_stress(run, top, static_cast<int>(k), target_Pa_[k], area_m2(),
                   2e-3 * wave_speed_m_per_s(lanes_[k]));
+    }
   }
 
   void operator()(LaneRun& run, int lane) {
@@ -152,7 +155,9 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                                        std::span<const double> normal_stress_Pa,
                                        const DirectShearConfig& config, const Packing& packing,
                                        const RunOptions& options) {
-  LaneRun run(make_specimen(packing, lanes, box_walls(config), {config.bond_gap_over_radius}));
+  BondingSpec bonding{config.bond_gap_over_radius};
+  bonding.place.bedding = Vec3(std::sin(config.cut_angle_rad), 0, std::cos(config.cut_angle_rad));
+  LaneRun run(make_specimen(packing, lanes, box_walls(config), bonding));
   for (std::size_t k = 0; k < lanes.size(); ++k)
     run.results[k].curves = {{fmt::format("shear_{:.0f}Pa", normal_stress_Pa[k]),
                               {"shear_displacement_m", "shear_stress_Pa", "normal_stress_Pa",

@@ -34,6 +34,9 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                        .stop_at_peak_share = config.stop_at_peak_share};
   for (const SoilMaterial& m : lanes)
     loading.speed_m_per_s.push_back(config.pull_speed_over_wave_speed * wave_speed_m_per_s(m));
+  for (int lane = 0; lane < run.num_lanes(); ++lane)
+    set_nominal_rate(run.specimen.model, lane,
+                     loading.speed_m_per_s[static_cast<std::size_t>(lane)] / config.specimen_height_m);
   for (ExperimentResult& r : run.results)
     r.curves = {{"stress_strain", {"axial_strain", "tensile_stress_Pa", "bonds_broken"}, {}}};
   run_past_peak(run, loading, options.stop);

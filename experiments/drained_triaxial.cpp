@@ -56,6 +56,7 @@ class TriaxialProtocol {
   void start(LaneRun& run) {
     for (int lane = 0; lane < run.num_lanes(); ++lane) {
       const std::size_t k = static_cast<std::size_t>(lane);
+      set_nominal_rate(run.specimen.model, lane, strain_rate_per_s(run, tasks_[k]));
       if (tasks_[k].relative_density) prepared_[k].start(run, lane);
       else bonded_[k].start(run, lane);
     }

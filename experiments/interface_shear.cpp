@@ -34,6 +34,7 @@ std::vector<Wall> box_walls(const InterfaceShearConfig& c) {
       {.direction = Vec3::UnitY()},
       {.direction = -Vec3::UnitY(), .position_m = length * Vec3::UnitY()}};
   for (std::size_t w = top; w < walls.size(); ++w) walls[w].friction_scale = 0;
+  walls[steel].adhesion_scale = 1;
   return walls;
 }
 
@@ -58,9 +59,12 @@ class SlideProtocol {
   }
 
   void start(LaneRun& run) const {
-    for (std::size_t k = 0; k < lanes_.size(); ++k)
+    for (std::size_t k = 0; k < lanes_.size(); ++k) {
+      set_nominal_rate(run.specimen.model, static_cast<int>(k),
+                       speed_m_per_s(k) / config_.box_height_m);
       hold_stress(run, top, static_cast<int>(k), target_Pa_[k], area_m2(),
                   2e-3 * wave_speed_m_per_s(lanes_[k]));
+    }
   }
 
   void operator()(LaneRun& run, int lane) {

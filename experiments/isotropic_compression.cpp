@@ -52,7 +52,8 @@ double cloud_time_step_s(const Model& model, int lane) {
   const auto smallest = std::ranges::min_element(model.radius_m) - model.radius_m.begin();
   const double r = model.radius_m[static_cast<std::size_t>(smallest)];
   const double m = model.mass_kg[static_cast<std::size_t>(smallest)];
-  const double kn = law.contact_stiffness * std::numbers::pi * r / 2;
+  const double kn =
+      law.contact_stiffness * stiffness_bound(law.effects) * std::numbers::pi * r / 2;
   const double translation = (1 + 2 * law.shear_stiffness_ratio) / 3;
   const double rotation = 2.0 / 3.0 * law.shear_stiffness_ratio / 0.4;
   const double k = 2 * 12 * kn * std::max(translation, rotation) / m;

@@ -77,6 +77,13 @@ void set_friction(LaneRun& run, int lane, double friction) {
   model_changed(run.workspace);
 }
 
+void set_effects(LaneRun& run, int lane, double rolling_friction, const EffectLaw& effects) {
+  LaneLaw& law = run.specimen.model.lanes[static_cast<std::size_t>(lane)];
+  law.rolling_friction = rolling_friction;
+  law.effects = effects;
+  model_changed(run.workspace);
+}
+
 void set_local_damping(LaneRun& run, int lane, double local_damping) {
   run.specimen.model.lanes[static_cast<std::size_t>(lane)].local_damping = local_damping;
   model_changed(run.workspace);

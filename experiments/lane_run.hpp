@@ -49,6 +49,9 @@ void set_time_step(LaneRun& run, int lane, double dt_s);
 /// Changes the friction between the grains of one lane between intervals.
 void set_friction(LaneRun& run, int lane, double friction);
 
+/// Changes rolling friction and the laws beyond the baseline of one lane between intervals.
+void set_effects(LaneRun& run, int lane, double rolling_friction, const EffectLaw& effects);
+
 /// Changes the local damping of one lane between intervals.
 void set_local_damping(LaneRun& run, int lane, double local_damping);
 

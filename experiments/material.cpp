@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiments/material.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tilth {
 
 std::vector<Field> fields(SoilMaterial& m) {
-  return {{"contact_modulus_Pa", &m.contact_modulus_Pa, 1e2, 1e12},
+  std::vector<Field> all = {
+          {"contact_modulus_Pa", &m.contact_modulus_Pa, 1e2, 1e12},
           {"stiffness_ratio", &m.contact_stiffness_ratio, 0.1, 100},
           {"friction", &m.friction, 0, 10},
           {"wall_friction", &m.wall_friction, 0, 10},
@@ -22,6 +24,8 @@ std::vector<Field> fields(SoilMaterial& m) {
           {"moment_contribution", &m.bond.moment_contribution, 0, 1},
           {"local_damping", &m.local_damping, 0, 0.95},
           {"grain_density_kg_per_m3", &m.density_kg_per_m3, 10, 20000}};
+  for (const Field& f : fields(m.effects)) all.push_back(f);
+  return all;
 }
 
 std::vector<std::string> problems(const SoilMaterial& material) {
@@ -35,9 +39,11 @@ LaneLaw lane_law(const SoilMaterial& m) {
           .friction = m.friction,
           .wall_friction = m.wall_friction,
           .rolling_friction = m.rolling_friction,
-          .tool_friction = m.tool_friction,
-          .local_damping = m.local_damping,
-          .bond = bond_law(m.bond)};
+          .tool_friction = std::max(m.tool_friction + m.effects.tool_friction_offset, 0.0),
+          .local_damping =
+              std::clamp(m.local_damping * (1 + m.effects.local_damping_change), 0.0, 0.95),
+          .bond = bond_law(with_offsets(m.bond, m.effects)),
+          .effects = effect_law(m.effects, m.bond)};
 }
 
 double wave_speed_m_per_s(const SoilMaterial& m) {

@@ -5,6 +5,7 @@
 
 #include "dem_core/model.hpp"
 #include "experiments/field.hpp"
+#include "experiments/soil_effects.hpp"
 
 namespace tilth {
 
@@ -19,6 +20,7 @@ struct SoilMaterial {
   BondMaterial bond{.modulus_Pa = 2e6, .tensile_strength_Pa = 20e3, .cohesion_Pa = 20e3};
   double local_damping = 0.7;           ///< quasi-static tests; alpha of Cundall
   double density_kg_per_m3 = 2650;      ///< of one grain; scales out of tests without gravity
+  SoilEffects effects = {};             ///< candidate missing effects: none
 };
 
 /// Names and ranges of all numbers of a material.

@@ -29,7 +29,8 @@ LaneLaw loose_law(SoilMaterial m, const LooseBedSpec& spec) {
 /// dashpots likewise; dt = 4 / (c + sqrt(c^2 + 4 k)) (time_step.md, 4 and 5).
 /// @pre modulus stiffness and restitution damping, which are the model's defaults
 double crowded_time_step_s(const LaneLaw& law, double mass_kg, double radius_m) {
-  const double kn = law.contact_stiffness * std::numbers::pi * 0.5 * radius_m;
+  const double kn =
+      law.contact_stiffness * stiffness_bound(law.effects) * std::numbers::pi * 0.5 * radius_m;
   const double c = std::sqrt(0.5 * mass_kg * kn);
   const auto rate = [&](double normal, double shear, double rolling) {
     return std::max(16.0 / 3 * (normal + 2 * shear), 32.0 / 3 * (shear + rolling) / 0.4) / mass_kg;

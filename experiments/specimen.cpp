@@ -67,6 +67,7 @@ Specimen make_specimen(const Packing& packing, std::span<const SoilMaterial> mat
   s.model.mass_kg = sphere_masses_kg(packing.radius_m, materials.front().density_kg_per_m3);
   const State placed = initial_state(s.model, packing.position_m);
   add_bonds_and_references(s.model, placed, packing.mean_radius_m, bonding);
+  s.model.bond_strength = bond_strengths(s.model, packing, materials, bonding.place);
   add_wall_references(s.model, placed, packing.mean_radius_m, bonding);
   add_tool_references(s.model, placed);
   s.state = initial_state(s.model, packing.position_m);

@@ -7,6 +7,7 @@
 
 #include "dem_core/packing.hpp"
 #include "dem_core/state.hpp"
+#include "experiments/bond_strengths.hpp"
 #include "experiments/material.hpp"
 
 namespace tilth {
@@ -17,6 +18,7 @@ struct BondingSpec {
   double max_gap_over_radius = 0.1;
   /// Numbers of the walls that hold every grain within that gap by glue, for good.
   std::vector<int> glued_walls = {};
+  BondPlace place = {};
 };
 
 struct Specimen {

@@ -43,13 +43,15 @@ Tool waiting_tool(const SweepTillageConfig& c) {
 Specimen bonded_bed(const SweepTillageConfig& c, Packing packing,
                     std::span<const SoilMaterial> lanes) {
   for (Vec3& x : packing.position_m) x.y() -= 0.5 * c.bin_width_m;
-  Specimen s = make_specimen(packing, lanes, bin_walls(c), {c.bond_gap_over_radius, {floor_wall}},
-                             {waiting_tool(c)});
+  Specimen s = make_specimen(
+      packing, lanes, bin_walls(c),
+      {c.bond_gap_over_radius, {floor_wall}, {.surface_m = c.bed_depth_m}}, {waiting_tool(c)});
   s.model.gravity_m_per_s2 = -c.gravity_m_per_s2 * Vec3::UnitZ();
   for (int lane = 0; lane < s.model.num_lanes(); ++lane) {
     LaneLaw& law = s.model.lanes[static_cast<std::size_t>(lane)];
     law.normal_damping = damping_number(c.restitution);
     law.tangential_damping = law.normal_damping * law.shear_stiffness_ratio;
+    set_nominal_rate(s.model, lane, laboratory_rate_per_s);  // the tool's speed is the real one
     law.dt_s = ladder_time_step_s(0.8 * stable_time_step_s(s.model, s.state, lane));
   }
   return s;

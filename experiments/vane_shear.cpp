@@ -56,9 +56,12 @@ class VaneProtocol {
   }
 
   void start(LaneRun& run) const {
-    for (std::size_t k = 0; k < lanes_.size(); ++k)
+    for (std::size_t k = 0; k < lanes_.size(); ++k) {
+      set_nominal_rate(run.specimen.model, static_cast<int>(k),
+                       tip_speed_m_per_s(k) / config_.vane_diameter_m);
       hold_stress(run, top, static_cast<int>(k), config_.surcharge_stress_Pa, area_m2(),
                   2e-3 * wave_speed_m_per_s(lanes_[k]));
+    }
   }
 
   void operator()(LaneRun& run, int lane) {

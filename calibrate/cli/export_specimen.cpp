@@ -166,6 +166,11 @@ std::vector<std::string> deck_lines(const ExportSource& source, const ExportSpec
   if (const double mu = source.set.material.rolling_friction; mu > 0)
     lines.push_back(fmt::format("NOT in this deck: rolling_friction = {} (type C of Ai et al. 2011, "
                                 "k_r = k_s Rbar^2)", mu));
+  SoilEffects effects = source.set.material.effects, none;
+  const std::vector<Field> baseline = fields(none);
+  for (const Field& f : fields(effects))
+    if (const std::string value = field_text(f); value != field_text(*find_field(baseline, f.name)))
+      lines.push_back(fmt::format("NOT in this deck: {} = {} (calibrate effects)", f.name, value));
   lines.push_back("");
   lines.push_back("Specimen: " + s.packing);
   return lines;

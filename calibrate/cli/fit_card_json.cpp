@@ -336,7 +336,10 @@ FittedSet read_fit_card(const std::filesystem::path& card_or_folder) {
   if (auto engine = card.object("engine")) set.preview = engine->flag("preview", false);
   if (auto material = card.object("material")) {
     for (const Field& f : fields(set.material))
-      if (const auto v = material->required_number(f.name, {f.lower, f.upper}))
+      // Cards written before there were effects do not name them: then there are none.
+      if (const auto v = find_field(fields(set.material.effects), f.name)
+                             ? material->optional_number(f.name, {f.lower, f.upper})
+                             : material->required_number(f.name, {f.lower, f.upper}))
         *std::get<double*>(f.value) = *v;
     material->finish();
   } else {

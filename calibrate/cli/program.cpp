@@ -8,6 +8,7 @@
 
 #include "calibrate/cli/command_cache.hpp"
 #include "calibrate/cli/command_check.hpp"
+#include "calibrate/cli/command_effects.hpp"
 #include "calibrate/cli/command_export.hpp"
 #include "calibrate/cli/command_features.hpp"
 #include "calibrate/cli/command_fit.hpp"
@@ -47,6 +48,7 @@ int run_program(int argc, const char* const* argv) {
   FitCommandOptions fit_options;
   CheckOptions check_options;
   SimulateOptions simulate_options;
+  EffectsOptions effects_options;
   ExportOptions export_options;
   FeaturesOptions features_options;
   WorkerOptions worker_options;
@@ -61,6 +63,9 @@ int run_program(int argc, const char* const* argv) {
   add_check_options(*check, check_options);
   CLI::App* simulate = app.add_subcommand("simulate", "run one virtual test");
   add_simulate_options(*simulate, simulate_options);
+  CLI::App* effects =
+      app.add_subcommand("effects", "the candidate missing effects: parameters, sizes, laws, sources");
+  add_effects_options(*effects, effects_options);
   CLI::App* exporting = app.add_subcommand("export", "write a fitted set for other DEM codes");
   add_export_options(*exporting, export_options);
   CLI::App* features =
@@ -92,6 +97,7 @@ int run_program(int argc, const char* const* argv) {
   try {
     if (check->parsed()) return run_check(check_options);
     if (simulate->parsed()) return run_simulate(simulate_options, command_line);
+    if (effects->parsed()) return run_effects(effects_options);
     if (features->parsed()) return run_features(features_options);
     if (sensitivity->parsed())
       return run_sensitivity_command(sensitivity_options, command_line);

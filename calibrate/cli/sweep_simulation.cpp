@@ -7,7 +7,9 @@
 #include <optional>
 
 #include "calibrate/cli/sweep_views.hpp"
+#include "calibrate/cli/virtual_test.hpp"
 #include "calibrate/parallel.hpp"
+#include "experiments/measurement_effects.hpp"
 
 namespace tilth {
 namespace {
@@ -58,11 +60,15 @@ std::vector<ExperimentResult> simulate_sweeps(const SweepTillageConfig& config,
                                               std::span<const std::uint64_t> seeds,
                                               const RunContext& context, const SweepOutput& output,
                                               std::vector<std::string>& missing) {
+  TestConfig set_up = config;
+  SoilMaterial on_day = material;
+  apply_setup_effects(set_up, on_day);
   std::vector<WatchedRun> runs(seeds.size());
   parallel_for_each_index(seeds.size(), context.num_threads, [&](std::size_t k) {
-    SweepTillageConfig own = config;
+    SweepTillageConfig own = std::get<SweepTillageConfig>(set_up);
     own.packing_seed = seeds[k];
-    runs[k] = watch(material, own, context, output);
+    runs[k] = watch(on_day, own, context, output);
+    apply_measurement_effects("sweep_tillage", fields(own), material.effects, runs[k].result);
   });
   std::vector<ExperimentResult> results;
   for (std::size_t k = 0; k < seeds.size(); ++k) {

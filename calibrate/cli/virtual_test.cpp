@@ -10,6 +10,8 @@
 
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
+#include "experiments/measurement_effects.hpp"
+#include "experiments/setup_effects.hpp"
 
 namespace tilth {
 namespace {
@@ -250,9 +252,11 @@ std::string feature_name(const SoilTarget& target, const TestCondition& conditio
   return target.observable_id;
 }
 
-std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
-                                               std::span<const SoilMaterial> members,
-                                               PackingStore& packings, const RunOptions& options) {
+namespace {
+
+std::vector<ExperimentResult> run_as_set_up(const TestConfig& config,
+                                            std::span<const SoilMaterial> members,
+                                            PackingStore& packings, const RunOptions& options) {
   return std::visit(
       Runners{
           [&](const UnconfinedCompressionConfig& c) { return run_unconfined_compression(members, c, packings, options); },
@@ -266,6 +270,58 @@ std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
           [&](const AngleOfReposeConfig& c) { return run_angle_of_repose(members, c, packings, options); },
           [&](const SweepTillageConfig& c) { return run_sweep_tillage(members, c, packings, options); }},
       config);
+}
+
+/// Members whose effects ask for one setup, as places in the list.
+std::vector<std::vector<std::size_t>> setup_groups(std::span<const SoilMaterial> members) {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto key = setup_key(members[k].effects);
+    const auto own = std::ranges::find_if(
+        groups, [&](const auto& g) { return setup_key(members[g.front()].effects) == key; });
+    if (own == groups.end()) groups.push_back({k});
+    else own->push_back(k);
+  }
+  return groups;
+}
+
+ExperimentResult not_possible(const std::vector<std::string>& problems) {
+  ExperimentResult r;
+  r.status = RunStatus::not_settled;
+  r.message = fmt::format("its effects ask for an impossible setup: {}", problems.front());
+  return r;
+}
+
+}  // namespace
+
+void apply_setup_effects(TestConfig& config, SoilMaterial& material) {
+  apply_setup_effects(test_id(config), fields(config), material.effects);
+  material = on_day_of_test(test_id(config), material);
+}
+
+std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
+                                               std::span<const SoilMaterial> members,
+                                               PackingStore& packings, const RunOptions& options) {
+  std::vector<ExperimentResult> results(members.size());
+  for (const std::vector<std::size_t>& group : setup_groups(members)) {
+    TestConfig own = config;
+    std::vector<SoilMaterial> materials;
+    for (const std::size_t k : group) {
+      materials.push_back(members[k]);
+      own = config;
+      apply_setup_effects(own, materials.back());
+    }
+    const std::vector<std::string> wrong =
+        same_values(own, config) ? std::vector<std::string>() : problems(own);
+    std::vector<ExperimentResult> runs =
+        wrong.empty() ? run_as_set_up(own, materials, packings, options)
+                      : std::vector<ExperimentResult>(group.size(), not_possible(wrong));
+    for (std::size_t m = 0; m < group.size(); ++m) {
+      apply_measurement_effects(test_id(own), fields(own), members[group[m]].effects, runs[m]);
+      results[group[m]] = std::move(runs[m]);
+    }
+  }
+  return results;
 }
 
 }  // namespace tilth

@@ -68,6 +68,10 @@ void apply_condition(TestConfig& config, const TestCondition& condition);
 /// displacements "@<depth>m_<offset>m".
 std::string feature_name(const SoilTarget& target, const TestCondition& condition);
 
+/// What the material's effects change before the test: settings, and the material on that day.
+void apply_setup_effects(TestConfig& config, SoilMaterial& material);
+
+/// One result per member, with all that its effects do to setup, soil and measurement.
 std::vector<ExperimentResult> run_virtual_test(const TestConfig& config,
                                                std::span<const SoilMaterial> members,
                                                PackingStore& packings, const RunOptions& options);

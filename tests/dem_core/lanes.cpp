@@ -60,9 +60,36 @@ LaneLaw member(LaneLaw law, int k) {
   return law;
 }
 
+/// Sets 0 and 4 have no effect: alone they run the baseline's kernel, beside the others that of effects.
+/// `stress_Pa` is one of the scene's scale.
+EffectLaw effects_of(int k, double stress_Pa) {
+  EffectLaw e;
+  if (k % 4 == 0) return e;
+  e.bond_softening = k == 1 || k == 6 ? 1.5 : 0.0;
+  e.rate_strengthening = k >= 2 ? 0.1 * k : 0.0;
+  e.rate_reference_per_s = 1e-3 * k;
+  e.capillary_Pa = k == 2 || k == 7 ? stress_Pa : 0.0;
+  e.healing_Pa = k == 3 ? stress_Pa : 0.0;
+  e.healing_time_s = 0.3;
+  e.tool_adhesion_Pa = k % 2 ? 0.2 * k * stress_Pa : 0.0;
+  e.stiffness_exponent = k == 5 || k == 6 ? 0.06 * k : 0.0;
+  e.reference_pressure_Pa = 3 * stress_Pa;
+  e.contact_plasticity = k == 1 || k == 6 ? 0.1 * k : 0.0;
+  e.crushing_compliance_per_Pa = k == 7 ? 1 / (20 * stress_Pa) : 0.0;
+  return e;
+}
+
+/// Strengths from bond to bond, alike in every scene; none where only sets without effects run.
+void add_bond_strengths(Scene& scene, const std::vector<int>& members) {
+  if (members == std::vector<int>{0} || members == std::vector<int>{4}) return;
+  for (std::size_t b = 0; b < scene.model.bonds.size(); ++b)
+    for (const int k : members)
+      scene.model.bond_strength.push_back(k % 4 == 0 ? 1.0 : 0.7 + 0.06 * static_cast<double>((b * 7 + static_cast<unsigned>(k)) % 11));
+}
+
 /// The cylinder crushed eight times as fast as the reference and at 40 % of its strength, so that
 /// it fails within 1500 steps; set 5 diverges.
-Scene crushed_cylinder(const std::vector<int>& members) {
+Scene crushed_cylinder(const std::vector<int>& members, bool with_effects = false) {
   Scene scene = testing::bonded_cylinder(static_cast<int>(members.size()));
   scene.law().bond.tensile_limit = 400;
   scene.law().bond.cohesion_limit = 200;
@@ -71,7 +98,9 @@ Scene crushed_cylinder(const std::vector<int>& members) {
     LaneLaw& law = scene.model.lanes[lane];
     law = member(base, members[lane]);
     if (members[lane] == 5) law.dt_s *= 20;
+    if (with_effects) law.effects = effects_of(members[lane], 100);
   }
+  if (with_effects) add_bond_strengths(scene, members);
   scene.begin();
   for (std::size_t lane = 0; lane < members.size(); ++lane)
     scene.state.drive(1, static_cast<int>(lane)).velocity_m_per_s = {
@@ -82,7 +111,8 @@ Scene crushed_cylinder(const std::vector<int>& members) {
 
 /// Grains between plates held at a pressure of their own in each lane, sheared by a moving floor and,
 /// where asked for, stirred by a cone and a vane that move on their own ways in each lane.
-Scene pressed_packing(const std::vector<int>& members, bool stirred = false) {
+Scene pressed_packing(const std::vector<int>& members, bool stirred = false,
+                      bool with_effects = false) {
   Scene scene;
   PackingSpec spec;
   spec.shape = ContainerShape::box;
@@ -114,7 +144,10 @@ Scene pressed_packing(const std::vector<int>& members, bool stirred = false) {
     law.friction = 0.1 + 0.1 * members[lane];
     law.wall_friction = 0.5 - 0.05 * members[lane];
     law.contact_stiffness *= 1 + 0.1 * members[lane];
+    if (with_effects) law.effects = effects_of(members[lane], 3);
+    if (with_effects && members[lane] == 1) law.rolling_friction = 0.2;
   }
+  if (with_effects) scene.model.walls[0].adhesion_scale = 0.5;
   if (stirred)
     scene.model.tools = {{.mesh = cone_mesh(1.0, 3, 2, 6, 9), .position_m = {3, 3, 9}},
                          {.mesh = vane_mesh(5, 3, 0.2), .position_m = {6, 6, 12}}};
@@ -187,6 +220,22 @@ TEST_CASE("lanes: cones and vanes stirring grains have the same bits in any widt
       for (const int tool : {0, 1}) CHECK(scene.state.num_tool_contacts(tool, lane) > 3);
     return scene;
   });
+}
+
+TEST_CASE("lanes: effects of its own leave a lane its bits in any width, and a lane without them the "
+          "baseline's",
+          "[dem_core][lanes][effects]") {
+  check_all_lane_counts([](const auto& members) { return crushed_cylinder(members, true); });
+  check_all_lane_counts([](const auto& members) { return pressed_packing(members, true, true); });
+}
+
+TEST_CASE("lanes: effects move something in every set that has them", "[dem_core][lanes][effects]") {
+  for (int k = 0; k < 8; ++k) {
+    const Scene with = pressed_packing({k}, true, true);
+    const Scene without = pressed_packing({k}, true);
+    CAPTURE(k);
+    CHECK((with.state.motion == without.state.motion) == (k % 4 == 0));
+  }
 }
 
 TEST_CASE("lanes: a lane frozen by hand stands still and the others do not notice",

@@ -11,6 +11,8 @@ list(APPEND TILTH_TEST_SOURCES
   dem_core/contact_law.cpp
   dem_core/damping.cpp
   dem_core/diagnostics.cpp
+  dem_core/effects_bond.cpp
+  dem_core/effects_contact.cpp
   dem_core/free_flight.cpp
   dem_core/incline.cpp
   dem_core/invariance.cpp

@@ -9,6 +9,7 @@ list(APPEND TILTH_TEST_SOURCES
   experiments/direct_tension.cpp
   experiments/drained_triaxial.cpp
   experiments/failed_runs.cpp
+  experiments/effects.cpp
   experiments/field.cpp
   experiments/interface_shear.cpp
   experiments/packs.cpp
