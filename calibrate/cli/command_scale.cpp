@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/fit_card.hpp"
@@ -140,27 +139,6 @@ ScalePlan read_plan(const ScaleCommandOptions& o) {
   return plan;
 }
 
-/// What makes one study different from another, for --resume.
-std::string config_json(const ScalePlan& plan, const ScaleCommandOptions& o) {
-  nlohmann::ordered_json series = nlohmann::ordered_json::array();
-  for (const ScaleSeries& s : plan.series) {
-    nlohmann::ordered_json values = {{"name", s.name}};
-    SweepTillageConfig config = s.config;
-    SoilMaterial material = s.material;
-    for (const Field& f : fields(config)) values[std::string(f.name)] = field_text(f);
-    for (const Field& f : fields(material)) values[std::string(f.name)] = field_text(f);
-    series.push_back(values);
-  }
-  const nlohmann::ordered_json config = {{"command", "scale"},
-                                         {"radii_m", plan.radii_m},
-                                         {"num_packings", plan.num_packings},
-                                         {"within_percent", o.within_percent},
-                                         {"seed", o.seed},
-                                         {"preview", o.quick},
-                                         {"series", series}};
-  return config.dump(2) + "\n";
-}
-
 }  // namespace
 
 void add_scale_options(CLI::App& command, ScaleCommandOptions& o) {
@@ -187,7 +165,7 @@ int run_scale_command(const ScaleCommandOptions& o, const std::string& command_l
   // 1. read and check everything, then open the folder
   const ScalePlan plan = read_plan(o);
   const std::filesystem::path folder =
-      open_run_folder(o.session, plan.series.front().soil_id + "-scale", config_json(plan, o));
+      open_run_folder(o.session, plan.series.front().soil_id + "-scale", scale_config_json(plan.series, {plan.radii_m, plan.num_packings, o.within_percent / 100, o.seed, o.quick}));
   const RunSession session(o.session, folder);
   if (const std::string note = session.store_note(); !note.empty()) std::cerr << note << '\n';
   std::cerr << fmt::format("{} series x {} sizes x {} packings with {} workers into {}\n", plan.series.size(),

@@ -61,11 +61,12 @@ void draw(const std::string& id, const std::vector<std::uint64_t>& seeds,
 void say_draught_band(const MaterialSource& source, const SweepTillageConfig& sweep,
                       const std::vector<ExperimentResult>& results) {
   const std::optional<SoilData> soil = soil_of(source);
-  const std::optional<TextureClass> texture = soil ? texture_class(*soil) : std::nullopt;
+  if (!soil || !sweep.tool_mesh.triangle.empty()) return;
+  const std::optional<TextureClass> texture = texture_class(*soil);
   double sum_N = 0.0, n = 0.0;
   for (const ExperimentResult& r : results)
     if (r.status == RunStatus::completed) sum_N += r.feature("draught_N"), n += 1;
-  if (!texture || n == 0 || !sweep.tool_mesh.triangle.empty()) return;
+  if (!texture || n == 0) return;
   const DraughtBand band =
       sweep_draught_band(*texture, sweep.sweep.width_m, sweep.tool_depth_m, sweep.speed_m_per_s);
   std::cout << draught_sentence(*texture, band, sum_N / n) << '\n';

@@ -50,10 +50,13 @@ std::vector<ExportRow> export_rows(const ExportSource& source) {
     rows.push_back({p.name, p.value, unit_of(p.name), p.lo95, p.hi95, p.role, p.verdict});
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   SoilMaterial material = source.set.material;
+  SoilEffects none;
+  const std::vector<Field> null_effects = fields(none);
   for (const Field& f : fields(material)) {
     const bool listed =
         std::ranges::any_of(rows, [&](const ExportRow& row) { return row.name == f.name; });
-    if (!listed)
+    const Field* null_effect = find_field(null_effects, f.name);  // an effect that does nothing is no parameter
+    if (!listed && !(null_effect && field_text(*null_effect) == field_text(f)))
       rows.push_back({std::string(f.name), *std::get<double*>(f.value), unit_of(f.name), unknown,
                       unknown, "not varied", ""});
   }

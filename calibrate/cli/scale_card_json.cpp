@@ -10,6 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json fields_json(const std::vector<Field>& fields) {
+  Json values = Json::object();
+  for (const Field& f : fields)
+    if (f.name != "particle_radius_m" && f.name != "packing_seed") values[std::string(f.name)] = field_text(f);
+  return values;
+}
+
 Json drift_json(const Drift& d) {
   return {{"mean", json_number(d.mean)},
           {"sd", json_number(d.sd)},
@@ -56,12 +63,8 @@ Json series_json(const ScaleResult& r) {
                                                       r.sizes.back().radius_m))
       groups.push_back({{"kind", g.kind},     {"name", g.name},         {"formula", g.formula},
                         {"finest", g.finest}, {"coarsest", g.coarsest}, {"kept", g.kept}});
-  Json test = Json::object(), material = Json::object();
   SweepTillageConfig config = r.series.config;
-  SoilMaterial soil = r.series.material;
-  for (const Field& f : fields(config))
-    if (f.name != "particle_radius_m" && f.name != "packing_seed") test[std::string(f.name)] = field_text(f);
-  for (const Field& f : fields(soil)) material[std::string(f.name)] = field_text(f);
+  SoilMaterial material = r.series.material;
   return {{"name", r.series.name},
           {"soil", r.series.soil_id},
           {"sentence", scale_sentence(r)},
@@ -71,11 +74,28 @@ Json series_json(const ScaleResult& r) {
           {"sizes", sizes},
           {"left_out", left_out},
           {"similarity", groups},
-          {"test", test},
-          {"material", material}};
+          {"test", fields_json(fields(config))},
+          {"material", fields_json(fields(material))}};
 }
 
 }  // namespace
+
+std::string scale_config_json(const std::vector<ScaleSeries>& series, const ScaleSettings& settings) {
+  Json list = Json::array();
+  for (const ScaleSeries& s : series) {
+    SweepTillageConfig config = s.config;
+    SoilMaterial material = s.material;
+    list.push_back({{"name", s.name}, {"test", fields_json(fields(config))}, {"material", fields_json(fields(material))}});
+  }
+  const Json config = {{"command", "scale"},
+                       {"radii_m", settings.radii_m},
+                       {"num_packings", settings.num_packings},
+                       {"tolerance", settings.tolerance},
+                       {"seed", settings.seed},
+                       {"preview", settings.preview},
+                       {"series", list}};
+  return config.dump(2) + "\n";
+}
 
 std::string scale_json(const std::vector<ScaleResult>& results, const ScaleContext& context) {
   Json series = Json::array();

@@ -3,6 +3,7 @@
 // What a scale study says: sentences, table, JSON, CSV and figure.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,6 +32,18 @@ std::string scale_report_text(const std::vector<ScaleResult>& results, const Sca
 
 /// scale.json, schema "tilth.scale/1".
 std::string scale_json(const std::vector<ScaleResult>& results, const ScaleContext& context);
+
+/// What makes one study different from another, beside its series.
+struct ScaleSettings {
+  std::vector<double> radii_m;
+  int num_packings = 0;
+  double tolerance = 0.0;
+  std::uint64_t seed = 0;
+  bool preview = false;
+};
+
+/// config.json, for --resume.
+std::string scale_config_json(const std::vector<ScaleSeries>& series, const ScaleSettings& settings);
 
 /// scale.csv: one row per series and size.
 std::string scale_csv(const std::vector<ScaleResult>& results);

@@ -7,19 +7,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/cli/card_parts_json.hpp"
 #include "calibrate/cli/gnuplot.hpp"
-#include "calibrate/cli/solver_version.hpp"
 #include "calibrate/draught_band.hpp"
 
 namespace tilth {
 namespace {
 
-using Json = nlohmann::ordered_json;
+const FittedSet::Value* value_named(const FittedSet& set, const std::string& name) {
+  const auto found = std::ranges::find(set.parameters, name, &FittedSet::Value::name);
+  return found == set.parameters.end() ? nullptr : &*found;
+}
 
-struct MeanAndSd {
-  double mean = 0.0, sd = 0.0;  ///< sd NaN for fewer than two
-};
+}  // namespace
 
 MeanAndSd over_packings(const std::vector<ExperimentResult>& runs, const std::string& feature) {
   const auto n = static_cast<double>(runs.size());
@@ -38,23 +37,12 @@ std::vector<std::string> compared_features(const FittedSoil& s) {
   return names;
 }
 
-/// The values a fit estimated.
 std::vector<const FittedSet::Value*> estimated(const FittedSet& set) {
   std::vector<const FittedSet::Value*> values;
   for (const FittedSet::Value& v : set.parameters)
     if (v.role.starts_with("calibrated")) values.push_back(&v);
   return values;
 }
-
-const FittedSet::Value* value_named(const FittedSet& set, const std::string& name) {
-  const auto found = std::ranges::find(set.parameters, name, &FittedSet::Value::name);
-  return found == set.parameters.end() ? nullptr : &*found;
-}
-
-/// "soil_a and soil_b: friction differ" for every pair and parameter.
-struct PairRow {
-  std::string a, b, parameter, word;
-};
 
 std::vector<PairRow> pairs_of(const std::vector<FittedSoil>& soils) {
   std::vector<PairRow> rows;
@@ -65,8 +53,6 @@ std::vector<PairRow> pairs_of(const std::vector<FittedSoil>& soils) {
           rows.push_back({soils[i].soil.id, soils[j].soil.id, v->name, difference_word(*v, *w)});
   return rows;
 }
-
-}  // namespace
 
 void run_sweeps(std::vector<FittedSoil>& soils, Fidelity fidelity, int num_packings, std::uint64_t first_seed,
                 const RunContext& context) {
@@ -128,46 +114,6 @@ std::string comparison_text(const std::vector<FittedSoil>& soils, const std::str
     for (const std::string& why : s.failures) text += fmt::format("  {:<14} failed: {}\n", s.soil.id, why);
   }
   return text;
-}
-
-std::string comparison_json(const std::vector<FittedSoil>& soils, const std::string& command) {
-  Json list = Json::array(), pairs = Json::array();
-  for (const FittedSoil& s : soils) {
-    Json parameters = Json::array(), sweep = Json::object();
-    for (const FittedSet::Value* v : estimated(s.set))
-      parameters.push_back({{"name", v->name},
-                            {"value", json_number(v->value)},
-                            {"lo95", json_number(v->lo95)},
-                            {"hi95", json_number(v->hi95)},
-                            {"verdict", v->verdict}});
-    if (!s.runs.empty())
-      for (const std::string& name : compared_features(s)) {
-        const MeanAndSd m = over_packings(s.runs, name);
-        sweep[name] = {{"mean", json_number(m.mean)}, {"sd", json_number(m.sd)}};
-      }
-    Json band = nullptr;
-    if (const auto texture = texture_class(s.soil)) {
-      const DraughtBand b =
-          sweep_draught_band(*texture, s.sweep.sweep.width_m, s.sweep.tool_depth_m, s.sweep.speed_m_per_s);
-      band = {{"texture", name_of(*texture)}, {"low_N", b.low_N}, {"middle_N", b.middle_N}, {"high_N", b.high_N}};
-    }
-    list.push_back({{"soil", s.soil.id},
-                    {"provenance", s.set.provenance_sentence},
-                    {"fit_exit_code", s.exit_code},
-                    {"preview", s.set.preview},
-                    {"parameters", parameters},
-                    {"sweep", sweep},
-                    {"num_packings", s.runs.size()},
-                    {"failures", s.failures},
-                    {"draught_band_d497", band}});
-  }
-  for (const PairRow& p : pairs_of(soils))
-    pairs.push_back({{"soils", {p.a, p.b}}, {"parameter", p.parameter}, {"difference", p.word}});
-  const Json card = {{"schema", "tilth.comparison/1"},
-                     {"soils", list},
-                     {"differences", pairs},
-                     {"reproduction", {{"command", command}, {"tool", tool_json()}, {"solver", solver_version}}}};
-  return card.dump(2) + "\n";
 }
 
 std::string draw_comparison(const std::vector<FittedSoil>& soils, const std::string& title,

@@ -25,6 +25,25 @@ struct FittedSoil {
 void run_sweeps(std::vector<FittedSoil>& soils, Fidelity fidelity, int num_packings, std::uint64_t first_seed,
                 const RunContext& context);
 
+struct MeanAndSd {
+  double mean = 0.0, sd = 0.0;  ///< sd NaN for fewer than two
+};
+
+MeanAndSd over_packings(const std::vector<ExperimentResult>& runs, const std::string& feature);
+
+/// Features of the sweep that are set beside each other: draught, contacts, areas, displacement by depth.
+std::vector<std::string> compared_features(const FittedSoil& soil);
+
+/// The values a fit estimated.
+std::vector<const FittedSet::Value*> estimated(const FittedSet& set);
+
+/// How one parameter of two soils compares.
+struct PairRow {
+  std::string a, b, parameter, word;  ///< soil ids; difference_word()
+};
+
+std::vector<PairRow> pairs_of(const std::vector<FittedSoil>& soils);
+
 /// "differ", "not distinguishable", or "not known" where a soil has no interval for the parameter.
 std::string difference_word(const FittedSet::Value& a, const FittedSet::Value& b);
 

@@ -188,14 +188,14 @@ TEST_CASE("sweep: what contradicts itself is refused with the limit", "[experime
   };
   CHECK(with([](auto&) {}) == "none");
   CHECK_THAT(with([](auto& c) { c.particle_radius_m = 0.05; }),
-             Contains("too large") && Contains("the limit is 0.03"));
+             Contains("too large") && Contains("the limit is 0.0416"));
   CHECK_THAT(with([](auto& c) { c.sweep.width_m = 0.8; }), Contains("the tool reaches 0.4 m"));
-  CHECK_THAT(with([](auto& c) { c.tool_depth_m = 0.2; }), Contains("must be below bed_depth_m"));
+  CHECK_THAT(with([](auto& c) { c.tool_depth_m = 0.25; }), Contains("must be below bed_depth_m"));
   CHECK_THAT(with([](auto& c) {
                c.tracer_lateral_m = {0.0, 0.4};
              }),
              Contains("tracer_lateral_m = 0.4") && Contains("outside the bin"));
-  CHECK_THAT(with([](auto& c) { c.tracer_depth_m = {0.17}; }), Contains("outside the bin"));
+  CHECK_THAT(with([](auto& c) { c.tracer_depth_m = {0.23}; }), Contains("outside the bin"));
   CHECK_THAT(with([](auto& c) { c.bin_length_m = 0.7; }),
              Contains("too short for a steady stretch"));
   CHECK_THAT(with([](auto& c) { c.bulk_density_kg_per_m3 = 2200; }),
