@@ -75,7 +75,9 @@ std::vector<Statistic> statistics() {
           {"ucs_strain_at_peak", "unconfined_compression", feature("strain_at_peak")},
           {"ucs_drop", "unconfined_compression", brittleness},
           {"ucs_fast_peak", "unconfined_compression",
-           [](const ExperimentResult& r) { return r.feature("fast_peak_ratio"); }},
+           [](const ExperimentResult& r) {
+             return r.feature("fast_peak_ratio") * r.feature("peak_stress_Pa");
+           }},
           {"bt_strength", "direct_tension", feature("tensile_strength_Pa")},
           {"ds_peak_10kPa", "direct_shear", feature("peak_shear_stress_Pa@10000")},
           {"ds_peak_100kPa", "direct_shear", feature("peak_shear_stress_Pa@100000")},
