@@ -136,7 +136,7 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
   std::vector<std::vector<double>> fitted, held;
   std::string tics = "set ytics (";
   double reach = 3;
-  std::size_t longest = 40;  // characters of a label's line
+  std::size_t longest = 0;  // characters of a label in one line
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const double y = static_cast<double>(rows.size() - k);
     const TargetRow& r = rows[k];
@@ -154,7 +154,9 @@ std::string draw_targets(const std::string& title, const std::vector<TargetRow>&
       "set object rectangle from -1, graph 0 to 1, graph 1 fc rgb '#3d8b37' fs transparent solid "
       "0.10 noborder behind\n"
       "set arrow from 0, graph 0 to 0, graph 1 nohead lc rgb '#444444'\n",
-      gnuplot_quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6, longest + 8);
+      gnuplot_quoted(title), -reach, reach, static_cast<double>(rows.size()) + 0.6,
+      // a character of a label is as wide as 0.78 of those that margins are counted in
+      longest > 0 ? static_cast<std::size_t>(0.78 * static_cast<double>(longest)) + 3 : 48);
   std::string plot = "plot ";
   if (!fitted.empty()) {
     script += gnuplot_data("fitted", fitted);
