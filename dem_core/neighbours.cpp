@@ -163,7 +163,7 @@ void copy_spring(const AlignedDoubles& from, std::size_t k, AlignedDoubles& to, 
 }
 
 void rebuild_pairs(const Model& model, State& state, Workspace& workspace) {
-  const Rows rows(model, state, workspace.list_margin_m);
+  const Rows rows(model, state, list_margin_m(workspace));
   const std::size_t lanes = as_size(state.num_lanes);
   ContactMemory fresh;
   fresh.row_begin.assign(rows.partners.size() + 1, 0);
@@ -220,7 +220,7 @@ std::vector<const WallReference*> references_of_wall(const Model& model, int wal
 
 bool near_wall(const Model& model, const State& state, const Workspace& workspace, int wall,
                int particle) {
-  const double reach = model.radius_m[as_size(particle)] + workspace.list_margin_m;
+  const double reach = model.radius_m[as_size(particle)] + list_margin_m(workspace);
   for (int lane = 0; lane < state.num_lanes; ++lane)
     if (state.active[as_size(lane)] &&
         distance_to_reach_wall_m(model, state, wall, state.position_m(particle, lane), lane) < reach)
@@ -275,7 +275,7 @@ void rebuild_walls(const Model& model, State& state, Workspace& workspace) {
 std::vector<Index> near_features(const Model& model, const State& state, const Workspace& workspace,
                                  int tool, int particle, double extent_m) {
   std::vector<Index> found;
-  const double reach_m = model.radius_m[as_size(particle)] + workspace.list_margin_m;
+  const double reach_m = model.radius_m[as_size(particle)] + list_margin_m(workspace);
   const MeshFeatures& mesh = workspace.tool_features[as_size(tool)];
   for (int lane = 0; lane < state.num_lanes; ++lane) {
     if (!state.active[as_size(lane)]) continue;
@@ -285,7 +285,7 @@ std::vector<Index> near_features(const Model& model, const State& state, const W
     const Vec3 x = to_body_frame(state, tool, state.position_m(particle, lane), lane);
     for (std::size_t f = 0; f < mesh.features.size(); ++f)
       if (feature_distance(mesh, f, x, reach_m, model.tools[as_size(tool)].max_depth_m,
-                           workspace.list_margin_m))
+                           list_margin_m(workspace)))
         found.push_back(static_cast<Index>(f));
   }
   std::ranges::sort(found);

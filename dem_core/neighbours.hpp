@@ -7,7 +7,12 @@
 
 namespace tilth {
 
-/// Lists every pair closer than its reference distance plus the skin in at least one active lane,
+/// Gap below which pairs are listed: motion to come, and what attraction reaches.
+inline double list_margin_m(const Workspace& workspace) {
+  return workspace.skin_m + workspace.attraction_reach_m;
+}
+
+/// Lists every pair closer than its reference distance plus list_margin_m in at least one active lane,
 /// every bond, and every grain that near to a wall or a feature of a tool; keeps contact memory of pairs that stay.
 /// The list only has to be long enough: pairs out of reach add exactly nothing.
 /// @cost O(num_particles x num_lanes)

@@ -150,8 +150,8 @@ struct Workspace {
   AlignedDoubles num_broken;           ///< [W], bonds broken since the start
   std::vector<double> moved_m;         ///< per lane: bound on the motion since the list was built
   std::int64_t num_rebuilds = 0;
-  double skin_m = 0.0;         ///< motion that uses up the list
-  double list_margin_m = 0.0;  ///< gap below which a pair is listed: the skin and the reach of attraction
+  double skin_m = 0.0;              ///< motion that uses up the list
+  double attraction_reach_m = 0.0;  ///< gap at which something may pull; pairs within skin + this are listed
 };
 
 /// State at rest at the given positions, no contact memory, all bonds holding.

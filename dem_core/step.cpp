@@ -89,14 +89,13 @@ void prepare(const Model& model, State& state, Workspace& workspace) {
   if (workspace.has_effects) state.bond_worst.resize(model.bonds.size() * w, 0.0);
   const double r_max = n == 0 ? 0.0 : *std::ranges::max_element(model.radius_m);
   const bool attracting = any_lane([](const LaneLaw& law) { return attracts(law.effects); });
-  workspace.list_margin_m =
-      workspace.skin_m + (attracting ? attraction_range_over_radius * r_max : 0.0);
+  workspace.attraction_reach_m = attracting ? attraction_range_over_radius * r_max : 0.0;
   write_law(model, state, workspace);
   workspace.tool_features.clear();
   workspace.tool_reach_m.clear();
   for (const Tool& tool : model.tools) {
     workspace.tool_features.push_back(mesh_features(tool.mesh));
-    workspace.tool_reach_m.push_back(tool_extent_m(tool) + r_max + workspace.list_margin_m);
+    workspace.tool_reach_m.push_back(tool_extent_m(tool) + r_max + list_margin_m(workspace));
   }
   rebuild_neighbours(model, state, workspace);
   workspace.prepared = true;
