@@ -43,7 +43,7 @@ struct LaneLaw {
   double tangential_damping = 0.0;     ///< see DampingKind (with m_eff k_n), >= 0
   double local_damping = 0.0;          ///< alpha in F - alpha |F| sign(v), in [0, 1)
   BondLaw bond;                        ///< constants of the bonds, multiplied with BondGeometry
-  EffectLaw effects;                   ///< laws beyond the baseline; null unless asked for
+  EffectLaw effects = {};              ///< laws beyond the baseline; null unless asked for
   double dt_s = 0.0;                   ///< time step of this lane, > 0
 };
 

@@ -10,6 +10,7 @@
 
 #include "calibrate/cli/file_hash.hpp"
 #include "calibrate/cli/tool_info.hpp"
+#include "experiments/field.hpp"
 
 namespace tilth {
 
@@ -24,6 +25,14 @@ inline nlohmann::ordered_json tool_json() {
           {"commit", tool_commit},
           {"compiler", tool_compiler},
           {"flags", tool_flags}};
+}
+
+/// Numbers of a config or a material by name.
+inline nlohmann::ordered_json fields_json(const std::vector<Field>& fields) {
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (const Field& f : fields)
+    std::visit([&](const auto* v) { object[std::string(f.name)] = *v; }, f.value);
+  return object;
 }
 
 /// File names with their SHA-256.

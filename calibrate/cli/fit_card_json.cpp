@@ -17,13 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json fields_json(const std::vector<Field>& fields) {
-  Json object = Json::object();
-  for (const Field& f : fields)
-    std::visit([&](const auto* v) { object[std::string(f.name)] = *v; }, f.value);
-  return object;
-}
-
 Json material_json(SoilMaterial material) { return fields_json(fields(material)); }
 
 Json test_json(TestConfig config) { return fields_json(fields(config)); }

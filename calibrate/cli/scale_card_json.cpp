@@ -10,11 +10,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json fields_json(const std::vector<Field>& fields) {
-  Json values = Json::object();
-  for (const Field& f : fields)
-    if (f.name != "particle_radius_m" && f.name != "packing_seed") values[std::string(f.name)] = field_text(f);
-  return values;
+/// What stays the same over the sizes of a series.
+Json series_settings_json(const ScaleSeries& series) {
+  SweepTillageConfig config = series.config;
+  SoilMaterial material = series.material;
+  Json test = fields_json(fields(config));
+  test.erase("particle_radius_m");
+  test.erase("packing_seed");
+  return {{"test", test}, {"material", fields_json(fields(material))}};
 }
 
 Json drift_json(const Drift& d) {
@@ -63,8 +66,6 @@ Json series_json(const ScaleResult& r) {
                                                       r.sizes.back().radius_m))
       groups.push_back({{"kind", g.kind},     {"name", g.name},         {"formula", g.formula},
                         {"finest", g.finest}, {"coarsest", g.coarsest}, {"kept", g.kept}});
-  SweepTillageConfig config = r.series.config;
-  SoilMaterial material = r.series.material;
   return {{"name", r.series.name},
           {"soil", r.series.soil_id},
           {"sentence", scale_sentence(r)},
@@ -74,19 +75,15 @@ Json series_json(const ScaleResult& r) {
           {"sizes", sizes},
           {"left_out", left_out},
           {"similarity", groups},
-          {"test", fields_json(fields(config))},
-          {"material", fields_json(fields(material))}};
+          {"settings", series_settings_json(r.series)}};
 }
 
 }  // namespace
 
 std::string scale_config_json(const std::vector<ScaleSeries>& series, const ScaleSettings& settings) {
   Json list = Json::array();
-  for (const ScaleSeries& s : series) {
-    SweepTillageConfig config = s.config;
-    SoilMaterial material = s.material;
-    list.push_back({{"name", s.name}, {"test", fields_json(fields(config))}, {"material", fields_json(fields(material))}});
-  }
+  for (const ScaleSeries& s : series)
+    list.push_back({{"name", s.name}, {"settings", series_settings_json(s)}});
   const Json config = {{"command", "scale"},
                        {"radii_m", settings.radii_m},
                        {"num_packings", settings.num_packings},

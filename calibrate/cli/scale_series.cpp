@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -73,17 +74,18 @@ Eigen::VectorXd displacement_of(const ExperimentResult& run, const std::vector<S
 
 /// ln(density) = a + b ln(radius) by least squares.
 struct PowerLaw {
-  double a = 0.0, b = 0.0;
+  Eigen::Vector2d coefficients;
   explicit PowerLaw(const std::vector<Drift>& density) {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (const Drift& d : density) {
-      const double u = std::log(d.radius_m), v = std::log(d.mean);
-      n += 1, x += u, y += v, xx += u * u, xy += u * v;
+    Eigen::MatrixX2d x(density.size(), 2);
+    Eigen::VectorXd y(density.size());
+    for (Eigen::Index k = 0; k < y.size(); ++k) {
+      const Drift& d = density[static_cast<std::size_t>(k)];
+      x.row(k) << 1.0, std::log(d.radius_m);
+      y[k] = std::log(d.mean);
     }
-    b = (n * xy - x * y) / (n * xx - x * x);
-    a = (y - b * x) / n;
+    coefficients = x.colPivHouseholderQr().solve(y);
   }
-  double at(double radius_m) const { return std::exp(a + b * std::log(radius_m)); }
+  double at(double radius_m) const { return std::exp(coefficients[0] + coefficients[1] * std::log(radius_m)); }
 };
 
 void study(double tolerance, ScaleResult& result) {

@@ -7,9 +7,7 @@
 
 namespace tilth {
 
-namespace {
 using Json = nlohmann::ordered_json;
-}  // namespace
 
 std::string comparison_json(const std::vector<FittedSoil>& soils, const std::string& command) {
   Json list = Json::array(), pairs = Json::array();

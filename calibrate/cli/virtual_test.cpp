@@ -90,7 +90,7 @@ void apply_fidelity(AngleOfReposeConfig& c, Fidelity fidelity) {
 }
 
 void apply_fidelity(SweepTillageConfig& c, Fidelity fidelity) {
-  // Coarse aggregates and narrower bins to search, finer ones to confirm: 500, 900 and 3100 of them. The
+  // Coarse aggregates and narrower bins to search, finer ones to confirm: 725, 1250 and 4270 of them. The
   // tool, its depth and its speed stay, so that the answer is the same quantity; what the size of the
   // aggregates does to it is the bias a fit measures.
   switch (fidelity) {

@@ -47,7 +47,6 @@ void make_data_root(const TempFolder& folder) {
   std::string strong = soil_test::read_text(folder.path() / "soils" / "strong" / "measurements.csv");
   strong.replace(strong.find("14160"), 5, "56640");
   soil_test::write_text(folder.path() / "soils" / "strong" / "measurements.csv", strong);
-  fs::copy(soil_test::data_root() / "test_costs.csv", folder.path() / "test_costs.csv");
 }
 
 FittedSet::Value value(double low, double high) { return {"friction", 0.5 * (low + high), low, high, "calibrated", ""}; }

@@ -113,7 +113,7 @@ TEST_CASE("neighbours: the list is the union of all active lanes and the bonds",
     place(scene, i, 2, Vec3::Constant(std::nan("")));  // a lane that diverged and was frozen
   }
   scene.state.active[2] = 0;
-  scene.workspace.list_margin_m = 0.3;
+  scene.workspace.skin_m = 0.3;
   rebuild_neighbours(scene.model, scene.state, scene.workspace);
   Pairs expected = all_pairs_within(scene, 0.3, 0);
   for (const auto& p : all_pairs_within(scene, 0.3, 1)) expected.push_back(p);
