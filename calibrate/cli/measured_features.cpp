@@ -140,9 +140,9 @@ std::string measurements_csv(const std::vector<SoilTarget>& targets) {
       "testId,observableId,conditionId,xId,x,value,sigma,sigma_kind,replicateId,weight,holdout,"
       "provenance,observation_group,source,locator\n";
   for (const SoilTarget& t : targets)
-    text += fmt::format("{},{},{},,,{:.6g},{:.4g},{},,1,{},{},{},{},{}\n", t.test_id,
+    text += fmt::format("{},{},{},,,{:.6g},{:.4g},{},{},1,{},{},{},{},{}\n", t.test_id,
                         t.observable_id, t.condition_id, t.value, t.sigma,
-                        sigma_kind_words()[static_cast<std::size_t>(t.sigma_kind)],
+                        sigma_kind_words()[static_cast<std::size_t>(t.sigma_kind)], t.replicate_id,
                         t.holdout ? 1 : 0, to_string(t.origin.provenance),
                         fmt::join(t.observation_groups, ";"), quoted(t.origin.source),
                         quoted(t.origin.locator));

@@ -8,6 +8,7 @@
 
 #include "calibrate/cli/command_cache.hpp"
 #include "calibrate/cli/command_check.hpp"
+#include "calibrate/cli/command_diagnose.hpp"
 #include "calibrate/cli/command_effects.hpp"
 #include "calibrate/cli/command_export.hpp"
 #include "calibrate/cli/command_features.hpp"
@@ -17,6 +18,7 @@
 #include "calibrate/cli/command_scale.hpp"
 #include "calibrate/cli/command_sensitivity.hpp"
 #include "calibrate/cli/command_simulate.hpp"
+#include "calibrate/cli/command_twin.hpp"
 #include "calibrate/cli/command_validate.hpp"
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -58,6 +60,8 @@ int run_program(int argc, const char* const* argv) {
   ValidateOptions validate_options;
   SensitivityCommandOptions sensitivity_options;
   ScaleCommandOptions scale_options;
+  TwinOptions twin_options;
+  DiagnoseOptions diagnose_options;
   add_fit_options(app, fit_options);
   CLI::App* check = app.add_subcommand("check", "list every problem of a data folder or config");
   add_check_options(*check, check_options);
@@ -87,6 +91,11 @@ int run_program(int argc, const char* const* argv) {
   add_sensitivity_options(*sensitivity, sensitivity_options);
   CLI::App* scale = app.add_subcommand("scale", "how large particles may be before tracers go elsewhere");
   add_scale_options(*scale, scale_options);
+  CLI::App* diagnose =
+      app.add_subcommand("diagnose", "find where simulation and measurement disagree, and which effect is missing");
+  add_diagnose_options(*diagnose, diagnose_options);
+  CLI::App* twin = app.add_subcommand("twin", "make measurements with a hidden truth");
+  add_twin_options(*twin, twin_options);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -101,6 +110,8 @@ int run_program(int argc, const char* const* argv) {
     if (features->parsed()) return run_features(features_options);
     if (sensitivity->parsed())
       return run_sensitivity_command(sensitivity_options, command_line);
+    if (diagnose->parsed()) return run_diagnose_command(diagnose_options, command_line);
+    if (twin->parsed()) return run_twin_command(twin_options);
     if (scale->parsed()) return run_scale_command(scale_options, command_line);
     if (exporting->parsed()) return run_export(export_options);
     if (plan->parsed()) return run_plan(plan_options);

@@ -5,9 +5,11 @@ list(
   calibrate/csv_table.cpp
   calibrate/diagnosis/effect_directions.cpp
   calibrate/diagnosis/effect_scores.cpp
+  calibrate/diagnosis/evidence_runs.cpp
   calibrate/diagnosis/gap_detection.cpp
   calibrate/diagnosis/gap_location.cpp
   calibrate/diagnosis/gap_size.cpp
+  calibrate/diagnosis/measured_campaign.cpp
   calibrate/diagnosis/misra_ladder.cpp
   calibrate/diagnosis/naming_support.cpp
   calibrate/diagnosis/noise.cpp

@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 The Tilth authors
+// SPDX-License-Identifier: BSD-3-Clause
+#include "calibrate/cli/command_diagnose.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+
+#include "calibrate/cli/diagnosis_report.hpp"
+#include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/extended_fit.hpp"
+#include "calibrate/cli/fit_card.hpp"
+#include "calibrate/cli/progress_display.hpp"
+#include "calibrate/cli/run_config.hpp"
+#include "calibrate/cli/run_folder.hpp"
+#include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/diagnosis/guards.hpp"
+#include "calibrate/soil_fit.hpp"
+
+namespace tilth {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_contenders = 3;
+constexpr double least_inclusion = 0.02;  ///< of a contender that is not named
+
+std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
+  if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
+  if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
+  std::vector<fs::path> all;
+  for (const std::string& name : known_soils(data_root())) all.push_back(soil_folder(data_root(), name));
+  return all;
+}
+
+/// The baseline of a fit, in the order of the soil's parameters. @throws ConfigError
+std::optional<Eigen::VectorXd> given_values(const std::string& fit, const SoilCase& soil) {
+  if (fit.empty()) return std::nullopt;
+  const FittedSet set = read_fit_card(fit);
+  Eigen::VectorXd values = nominal_values(soil.campaign.means);
+  for (std::size_t k = 0; k < soil.parameters.size(); ++k) {
+    const auto found = std::ranges::find(set.parameters, soil.parameters[k].name, &FittedSet::Value::name);
+    if (found != set.parameters.end()) values[static_cast<Eigen::Index>(k)] = found->value;
+    else if (soil.parameters[k].estimate)
+      throw ConfigError({fmt::format("--fit {}: has no {}, which the soil says is fitted", fit, soil.parameters[k].name)});
+  }
+  return values;
+}
+
+std::string reproducing_command(const DiagnoseOptions& o) {
+  std::string text = o.soil_folder.empty() ? "calibrate diagnose --soil " + o.soil : "calibrate diagnose --data " + o.soil_folder;
+  if (!o.fit.empty()) text += " --fit " + o.fit;
+  return text + fmt::format(" --seed {}{}{}", o.seed, o.quick ? " --quick" : "", o.apply ? " --apply" : "");
+}
+
+/// Effects that are refitted and compared: what is named together as one model, then the most probable others.
+std::vector<std::vector<std::size_t>> contenders_of(const Diagnosis& d) {
+  std::vector<std::vector<std::size_t>> models;
+  std::vector<std::size_t> named;
+  for (const NamedEffect& e : d.effects) named.push_back(e.effect);
+  if (!named.empty()) models.push_back(named);
+  std::vector<std::size_t> order(static_cast<std::size_t>(d.posterior.inclusion.size()));
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](std::size_t k) { return d.posterior.inclusion[static_cast<Eigen::Index>(k)]; });
+  const bool wants_rivals = !named.empty() || d.verdict == Verdict::set || d.verdict == Verdict::outside_catalogue;
+  for (const std::size_t k : order) {
+    if (!wants_rivals || models.size() >= max_contenders) break;
+    const bool is_named = std::ranges::find(named, k) != named.end();
+    const bool likely = d.posterior.inclusion[static_cast<Eigen::Index>(k)] > least_inclusion;
+    // one rival at least stands beside a name
+    if (!is_named && (likely || models.size() < 2)) models.push_back({k});
+  }
+  return models;
+}
+
+/// The statistics: the decision, or why there is none.
+Diagnosis decided(const std::vector<SoilCase>& soils, const DiagnosisOptions& options) {
+  Diagnosis d;
+  std::string why;
+  for (const SoilCase& s : soils)
+    if (!s.failure.empty()) why += (why.empty() ? "" : "; ") + s.campaign.means.id + ": " + s.failure;
+  if (!why.empty()) {
+    d.reason = why;
+    return d;
+  }
+  std::vector<SoilEvidence> evidence;
+  for (const SoilCase& s : soils) evidence.push_back(s.evidence);
+  d = diagnose(evidence, options);
+  GuardFacts facts;
+  for (const SoilCase& s : soils) {
+    facts.has_replicates = facts.has_replicates && s.campaign.has_replicates;
+    for (const NumericalGate& g : s.gates)
+      if (!g.passed()) facts.failed_gates.push_back(g.id);
+  }
+  apply_guards(facts, d);
+  return d;
+}
+
+/// The contenders an experiment should tell apart: the set, or a suggested name and its rivals.
+std::vector<std::size_t> open_contenders(const DiagnosisResult& r) {
+  const bool is_open = r.diagnosis.verdict == Verdict::set || r.diagnosis.verdict == Verdict::suggested;
+  std::vector<std::size_t> open;
+  if (!is_open) return open;
+  const auto& choices = r.soils.front().choices;
+  for (const std::string& id : r.contenders)
+    for (std::size_t k = 0; k < choices.size(); ++k)
+      if (choices[k].candidate.id == id) open.push_back(k);
+  return open;
+}
+
+}  // namespace
+
+void add_diagnose_options(CLI::App& command, DiagnoseOptions& o) {
+  CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils, or all: pooled");
+  command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")->excludes(soil);
+  command.add_option("--fit", o.fit, "fit.json or run folder: baseline values, instead of an own fit");
+  command.add_option("--seed", o.seed, "first packing seed (default 1)")->check(CLI::NonNegativeNumber);
+  command.add_flag("--quick", o.quick, "a labelled preview: small specimens, fewer packings");
+  command.add_flag("--apply", o.apply, "write fit.json of the model with the named effect");
+  add_session_options(command, o.session);
+}
+
+int run_diagnose_command(const DiagnoseOptions& o, const std::string& command_line) {
+  // 1. read and check everything, then open the folder
+  if (const auto found = problems(o.session); !found.empty()) throw ConfigError(found);
+  const DiagnosisSettings settings = diagnosis_settings(o.quick, o.seed);
+  DiagnosisResult result;
+  DiagnosisContext context{.settings = settings, .command = reproducing_command(o), .preview = o.quick};
+  for (const fs::path& folder : soil_folders(o)) {
+    const SoilData soil = load_soil(folder);
+    result.soils.push_back(soil_case(soil));
+    context.provenance_sentence += (context.provenance_sentence.empty() ? "" : "; ") + soil.id + ": " + provenance_sentence(soil);
+    for (const fs::path& file : soil_tables(folder)) context.inputs.push_back(file);
+  }
+  std::vector<std::optional<Eigen::VectorXd>> values;
+  for (const SoilCase& s : result.soils) values.push_back(given_values(o.fit, s));
+  const std::string stem = result.soils.size() > 1 ? "all" : result.soils.front().campaign.means.id;
+  const fs::path folder =
+      open_run_folder(o.session, stem + "-diagnosis", diagnosis_config_json(result.soils, settings, o.quick));
+  const RunSession session(o.session, folder);
+  if (const std::string note = session.store_note(); !note.empty()) std::cerr << note << '\n';
+
+  // 2. simulate and decide
+  ProgressDisplay display(::isatty(STDERR_FILENO) != 0, [](const std::string& line) { std::cerr << line << '\n'; });
+  SimulationLedger ledger;
+  ledger.max_simulations = 1'000'000;
+  ledger.max_failed_share = 1.0;  // a failed effect is reported, not fatal
+  ledger.should_stop = [&session] { return session.should_stop(); };
+  ledger.progress = [&display](const Progress& p) { display.show(p); };
+  const DiagnosisRunner runner(settings, session.context(), ledger);
+  for (std::size_t s = 0; s < result.soils.size(); ++s) runner.gather(result.soils[s], values[s]);
+  result.diagnosis = decided(result.soils, settings.statistics);
+  const auto models = result.diagnosis.soils.empty() ? std::vector<std::vector<std::size_t>>{} : contenders_of(result.diagnosis);
+  for (const auto& model : models)
+    for (const std::size_t k : model) result.contenders.push_back(result.soils.front().choices[k].candidate.id);
+  if (!models.empty())
+    for (SoilCase& s : result.soils) runner.refit_models(s, models);
+  if (!models.empty() && !session.should_stop())
+    result.advice = runner.advise(result.soils.front(), open_contenders(result));
+  display.finish();
+
+  // 3. write
+  context.num_simulations = ledger.num_done;
+  context.num_failed = ledger.failures.size();
+  write_file(folder / "diagnosis.json", diagnosis_json(result, context));
+  write_file(folder / "diagnosis.txt", diagnosis_text(result, context));
+  for (const std::string& why : draw_diagnosis(result, folder / "figures")) std::cerr << "no figure " << why << '\n';
+  if (o.apply && !session.should_stop())
+    for (const std::string& line : write_extended_fits(result, context, session.context(), folder)) std::cerr << line << '\n';
+  write_file(folder / "timing.json", session.timing_json(command_line));
+  std::cout << verdict_sentence(result) << '\n' << fmt::format("results: {} ({:.0f} s)\n", folder.string(), session.seconds());
+  if (session.should_stop()) {
+    std::cerr << session.stop_reason() << ": the report says what is known so far; go on with --resume\n";
+    return exit_budget;
+  }
+  return exit_done;
+}
+
+}  // namespace tilth
