@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <stdexcept>
 
@@ -51,6 +52,21 @@ std::size_t members_per_job(std::size_t num_members, int num_workers, int max_me
   return std::clamp<std::size_t>(share, 1, static_cast<std::size_t>(std::max(1, max_members)));
 }
 
+std::vector<std::vector<std::size_t>> jobs_of_like_effort(std::vector<std::size_t> runs,
+                                                          const std::function<double(std::size_t)>& effort,
+                                                          std::size_t size) {
+  if (effort) {
+    std::map<std::size_t, double> efforts;
+    for (const std::size_t k : runs) efforts[k] = effort(k);
+    std::ranges::stable_sort(runs, std::ranges::greater(), [&](std::size_t k) { return efforts.at(k); });
+  }
+  std::vector<std::vector<std::size_t>> jobs;
+  for (std::size_t at = 0; at < runs.size(); at += size)
+    jobs.emplace_back(runs.begin() + static_cast<std::ptrdiff_t>(at),
+                      runs.begin() + static_cast<std::ptrdiff_t>(std::min(at + size, runs.size())));
+  return jobs;
+}
+
 RunBroker::RunBroker(RunStore& store, WorkerPool& workers, BrokerOptions options)
     : store_(store), workers_(workers), options_(std::move(options)) {}
 
@@ -68,10 +84,10 @@ std::vector<RunBroker::Job> RunBroker::plan(const std::vector<std::size_t>& miss
     const std::vector<std::size_t>& all = groups[group];
     const int share = static_cast<int>(
         std::max<std::size_t>(1, static_cast<std::size_t>(workers_.num_workers()) / order.size()));
-    const std::size_t size = members_per_job(all.size(), share, options_.max_members);
-    for (std::size_t at = 0; at < all.size(); at += size)
-      jobs.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(at),
-                        all.begin() + static_cast<std::ptrdiff_t>(std::min(at + size, all.size())));
+    std::function<double(std::size_t)> effort;
+    if (options_.effort) effort = [&](std::size_t k) { return options_.effort(records[k].identity); };
+    for (auto& job : jobs_of_like_effort(all, effort, members_per_job(all.size(), share, options_.max_members)))
+      jobs.emplace_back(job.begin(), job.end());
   }
   return jobs;
 }

@@ -20,6 +20,9 @@ struct BrokerOptions {
   int max_tries = 3;            ///< of one run that crashes, hangs or gives NaN; then abandoned
   int max_members = 8;          ///< of one job: parameter sets that ride in one pack
   std::function<StopWish()> stop;  ///< may be empty
+  /// How long a run takes beside others of its setup, in any unit: a pack lasts as long as its longest member, so those of like
+  /// effort ride together. May be empty.
+  std::function<double(const RunIdentity&)> effort;
   /// Told after every job: runs that have ended and runs of this call. May be empty.
   std::function<void(std::size_t num_done, std::size_t num_all)> progress;
 };
@@ -66,5 +69,11 @@ class RunBroker {
 
 /// Members per job: as many as fit (max_members), but fewer where that leaves workers without a job.
 std::size_t members_per_job(std::size_t num_members, int num_workers, int max_members);
+
+/// Runs of one setup cut into jobs of `size`, those of the largest effort first; ties keep their order.
+/// @param effort  of a run; may be empty: the order stays
+std::vector<std::vector<std::size_t>> jobs_of_like_effort(std::vector<std::size_t> runs,
+                                                          const std::function<double(std::size_t)>& effort,
+                                                          std::size_t size);
 
 }  // namespace tilth

@@ -135,9 +135,9 @@ std::string draw_look_alikes(const DiagnosisResult& r, std::size_t s, const fs::
       cells.push_back({static_cast<double>(b) + 1, row_of(a, shown.size()),
                        d.look_alikes(static_cast<Eigen::Index>(shown[a]), static_cast<Eigen::Index>(shown[b]))});
   }
-  return draw(gnuplot_header(svg, 330 + 24 * static_cast<int>(shown.size())) + gnuplot_data("cells", cells) + row_labels(labels) + columns +
+  return draw(gnuplot_header(svg, 400 + 24 * static_cast<int>(shown.size())) + gnuplot_data("cells", cells) + row_labels(labels) + columns +
                   fmt::format(")\nset xrange [0.5:{0}]\nset yrange [0.5:{0}]\nset cbrange [-1:1]\nunset key\nunset grid\n"
-                              "set palette defined (-1 '{1}', 0 '#ffffff', 1 '{2}')\nset title {3}\nset cblabel 'cosine of the fingerprints, 1: cannot be told apart'\n"
+                              "set bmargin 15\nset palette defined (-1 '{1}', 0 '#ffffff', 1 '{2}')\nset title {3}\nset cblabel 'cosine of the fingerprints, 1: cannot be told apart'\n"
                               "plot $cells using 1:2:3 with image pixels\n",
                               end_of(shown.size(), 0.5), figure_colors[1], figure_colors[0],
                               gnuplot_quoted(d.soil + ": look-alikes in these data")),

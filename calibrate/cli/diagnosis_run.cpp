@@ -214,6 +214,11 @@ std::vector<std::uint64_t> DiagnosisRunner::seeds(std::uint64_t block, int num) 
   return list;
 }
 
+Evaluator DiagnosisRunner::evaluator_of(const SoilCase& soil, TargetScope scope) const {
+  return Evaluator(dem_simulator(soil.campaign.means, settings_.fidelity, context_, scope, FailedTest::leaves_others),
+                   soil.targets, "diagnosis", ledger_, scope, MissingFeatures::keep);
+}
+
 Eigen::VectorXd DiagnosisRunner::best_start(const SoilCase& soil, Evaluator& evaluator) const {
   const Eigen::VectorXd nominal = unit_start(soil.parameters);
   Eigen::MatrixXd units =
@@ -242,13 +247,13 @@ Eigen::VectorXd DiagnosisRunner::best_start(const SoilCase& soil, Evaluator& eva
   return units.col(best);
 }
 
-void DiagnosisRunner::fit_baseline(SoilCase& soil, Evaluator& evaluator) const {
+void DiagnosisRunner::fit_baseline(SoilCase& soil, Evaluator& evaluator, Evaluator& around) const {
   EvidencePlan plan;
   plan.residual_seeds = seeds(baseline_block, settings_.num_refit_packings);
   plan.derivative_seeds = seeds(baseline_block, 3);
   const auto rows = all_rows(soil);
   for (int pass = 0; pass < settings_.num_baseline_passes; ++pass) {
-    const auto near = simulate_evidence(evaluator, soil.parameters, soil.targets, soil.unit, {}, plan);
+    const auto near = simulate_evidence(evaluator, around, soil.fitted, soil.parameters, soil.targets, soil.unit, {}, plan);
     if (!near) return;
     SoilCase draft = soil;
     draft.simulated = *near;
@@ -276,17 +281,15 @@ void DiagnosisRunner::gather(SoilCase& soil, const std::optional<Eigen::VectorXd
       soil.unit[static_cast<Eigen::Index>(j)] =
           unit_from_physical(soil.parameters[free[j]], (*values)[static_cast<Eigen::Index>(free[j])]);
   }
-  Evaluator evaluator(dem_simulator(soil.campaign.means, settings_.fidelity, context_, TargetScope::all,
-                                    FailedTest::leaves_others),
-                      soil.targets, "diagnosis", ledger_, TargetScope::all, MissingFeatures::keep);
+  Evaluator evaluator = evaluator_of(soil, TargetScope::all), around = evaluator_of(soil, TargetScope::fitted);
   begin_stage(ledger_, "baseline");
-  if (!values) soil.unit = best_start(soil, evaluator);
-  fit_baseline(soil, evaluator);
+  if (!values) soil.unit = best_start(soil, around);
+  fit_baseline(soil, evaluator, around);
   begin_stage(ledger_, "fingerprints");
   const EvidencePlan plan{seeds(residual_block, settings_.num_residual_packings),
                           seeds(derivative_block, settings_.num_derivative_packings)};
   auto simulated =
-      simulate_evidence(evaluator, soil.parameters, soil.targets, soil.unit, steps_of(soil), plan);
+      simulate_evidence(evaluator, around, soil.fitted, soil.parameters, soil.targets, soil.unit, steps_of(soil), plan);
   if (!simulated) {
     soil.failure = is_blocked(ledger_) ? "stopped before the evidence was complete"
                                        : "fewer than two packings completed at the fitted values";
@@ -307,9 +310,7 @@ void DiagnosisRunner::gather(SoilCase& soil, const std::optional<Eigen::VectorXd
 
 void DiagnosisRunner::refit_models(SoilCase& soil, const std::vector<std::vector<std::size_t>>& contenders) const {
   begin_stage(ledger_, "refits");
-  Evaluator evaluator(dem_simulator(soil.campaign.means, settings_.fidelity, context_, TargetScope::all,
-                                    FailedTest::leaves_others),
-                      soil.targets, "refits", ledger_, TargetScope::all, MissingFeatures::keep);
+  Evaluator evaluator = evaluator_of(soil, TargetScope::all);
   const RefitProblem problem{soil.parameters,
                              soil.targets,
                              measured_means(soil),
@@ -359,10 +360,10 @@ std::vector<ExperimentAdvice> DiagnosisRunner::advise(const SoilCase& soil,
                         other_targets, "advice", ledger_, TargetScope::all, MissingFeatures::keep);
     const EvidencePlan plan{seeds(advice_block, settings_.num_advice_packings),
                             seeds(advice_block, settings_.num_advice_packings)};
-    const auto simulated = simulate_evidence(evaluator, soil.parameters, other_targets, soil.unit, steps, plan);
-    if (!simulated) continue;
     std::vector<Eigen::Index> rows(other.targets.size());
     for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = static_cast<Eigen::Index>(k);
+    const auto simulated = simulate_evidence(evaluator, evaluator, rows, soil.parameters, other_targets, soil.unit, steps, plan);
+    if (!simulated) continue;
     const Eigen::VectorXd variances =
         pooled_packing_variances(other, simulated->packings).array() / settings_.num_residual_packings +
         planned_cv * planned_cv / planned_replicates;

@@ -92,8 +92,9 @@ class DiagnosisRunner {
 
  private:
   std::vector<std::uint64_t> seeds(std::uint64_t block, int num) const;
+  Evaluator evaluator_of(const SoilCase& soil, TargetScope scope) const;
   Eigen::VectorXd best_start(const SoilCase& soil, Evaluator& evaluator) const;
-  void fit_baseline(SoilCase& soil, Evaluator& evaluator) const;
+  void fit_baseline(SoilCase& soil, Evaluator& evaluator, Evaluator& around) const;
   const DiagnosisSettings& settings_;
   const RunContext& context_;
   SimulationLedger& ledger_;

@@ -23,6 +23,7 @@
 #include "calibrate/cli/command_worker.hpp"
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/fit_all_soils.hpp"
+#include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/tool_info.hpp"
 #include "calibrate/config_error.hpp"
 
@@ -123,6 +124,9 @@ int run_program(int argc, const char* const* argv) {
     return run_fit(fit_options, command_line);
   } catch (const ConfigError& e) {
     return say_bad_input(e);
+  } catch (const WriteError& e) {
+    std::cerr << e.what() << '\n';
+    return exit_internal;
   } catch (const std::exception& e) {
     std::cerr << "internal error: " << e.what() << '\n';
     return exit_internal;

@@ -8,7 +8,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <fstream>
 
 #include "calibrate/config_error.hpp"
@@ -72,13 +74,16 @@ fs::path make_run_folder(const fs::path& wanted, const std::string& stem) {
 void write_file(const fs::path& file, const std::string& text) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
   const fs::path draft = file.string() + ".part";
+  errno = 0;
   std::ofstream out(draft, std::ios::binary);
   out << text;
   out.close();
   if (!out) {
+    const int reason = errno;
     std::error_code ignored;
     fs::remove(draft, ignored);
-    throw std::runtime_error("cannot write " + file.string());
+    throw WriteError("cannot write " + file.string() + (reason ? std::string(" (") + std::strerror(reason) + ")" : "") +
+                     ": what was simulated is kept, go on with --resume");
   }
   fs::rename(draft, file);
 }

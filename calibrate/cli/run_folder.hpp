@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 namespace tilth {
@@ -28,8 +29,13 @@ class FolderLock {
 /// @throws ConfigError if it cannot be made or written, or if another program works in it
 std::filesystem::path make_run_folder(const std::filesystem::path& wanted, const std::string& stem);
 
+/// The disk is full, or a file cannot be made: no bug, and nothing that is in the store is lost.
+struct WriteError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Writes beside and renames. Folders on the way are made.
-/// @throws std::runtime_error with the path
+/// @throws WriteError with path and reason
 void write_file(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace tilth

@@ -89,6 +89,7 @@ RunSession::RunSession(const SessionOptions& o, const fs::path& folder)
       workers_(std::make_unique<WorkerPool>(worker_command(o.max_lanes), threads_or_all(o.num_threads))),
       context_{packings_, threads_or_all(o.num_threads), o.max_lanes, &interrupt_flag(), nullptr} {
   BrokerOptions options;
+  options.effort = expected_effort;
   options.run_timeout_s = o.run_timeout_s;
   options.stop = [this] { return wish(); };
   broker_ = std::make_unique<RunBroker>(*store_, *workers_, options);

@@ -3,6 +3,7 @@
 #include "calibrate/cli/test_runs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -151,6 +152,14 @@ ExperimentResult result_of(const RunRecord& record) {
     r.message = std::move(ending.message);
   }
   return r;
+}
+
+double expected_effort(const RunIdentity& identity) {
+  const SoilMaterial m = run_of(identity).material;
+  const double modulus_Pa = std::max({m.contact_modulus_Pa, m.bond.modulus_Pa, 1.0});
+  const bool runs_in_real_time = identity.test == "sweep_tillage" || identity.test == "cone_penetration" ||
+                                 identity.test == "angle_of_repose";
+  return runs_in_real_time ? std::sqrt(modulus_Pa) : m.bond.tensile_strength_Pa / modulus_Pa;
 }
 
 std::vector<RunRecord> simulate_members(std::span<const RunIdentity> members, PackingStore& packings,

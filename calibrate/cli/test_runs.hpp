@@ -42,6 +42,11 @@ TestRun run_of(const RunIdentity& identity);
 RunRecord record_of(const ExperimentResult& result);
 ExperimentResult result_of(const RunRecord& record);
 
+/// Steps a run will take, up to a factor common to its test: with gravity or a tool in real time the number of time steps grows with the
+/// square root of the modulus; a specimen that is sheared or compressed until it fails lasts as long as its failure strain, strength over
+/// modulus.
+double expected_effort(const RunIdentity& identity);
+
 /// The worker's side: members of one setup on the lanes of this processor.
 std::vector<RunRecord> simulate_members(std::span<const RunIdentity> members, PackingStore& packings,
                                         int max_lanes);

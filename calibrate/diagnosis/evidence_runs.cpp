@@ -90,14 +90,15 @@ Eigen::VectorXd transformed_features(const std::vector<Target>& targets, const E
   return t;
 }
 
-std::optional<SimulatedEvidence> simulate_evidence(Evaluator& evaluator,
+std::optional<SimulatedEvidence> simulate_evidence(Evaluator& at_point, Evaluator& around,
+                                                   const std::vector<Eigen::Index>& compared,
                                                    const std::vector<Parameter>& parameters,
                                                    const std::vector<Target>& targets,
                                                    const Eigen::VectorXd& unit,
                                                    const std::vector<EffectStep>& effects,
                                                    const EvidencePlan& plan) {
   const Eigen::VectorXd point = physical_point(parameters, unit);
-  std::optional<Eigen::MatrixXd> packings = packings_at(evaluator, targets, point, plan.residual_seeds);
+  std::optional<Eigen::MatrixXd> packings = packings_at(at_point, targets, point, plan.residual_seeds);
   if (!packings) return std::nullopt;
 
   const auto p = static_cast<Eigen::Index>(targets.size());
@@ -108,9 +109,9 @@ std::optional<SimulatedEvidence> simulate_evidence(Evaluator& evaluator,
   for (std::size_t n = 0; n < plan.derivative_seeds.size(); ++n) {
     const std::uint64_t seed = plan.derivative_seeds[n];
     const Members members = members_at(point, effects, n < plan.costly_packings);
-    const std::vector<Evaluation> runs = evaluator.evaluate(members.points, seed);
+    const std::vector<Evaluation> runs = around.evaluate(members.points, seed);
     const std::optional<Secants> secants =
-        paired_secants(evaluator, parameters, targets, unit, steps, std::span(&seed, 1));
+        paired_secants(around, parameters, targets, unit, steps, std::span(&seed, 1));
     if (was_skipped(runs)) return std::nullopt;
     const Eigen::VectorXd base = transformed_features(targets, runs.front());
     if (!secants) continue;  // this packing failed at the point itself
@@ -130,7 +131,7 @@ std::optional<SimulatedEvidence> simulate_evidence(Evaluator& evaluator,
   for (Eigen::Index k = 0; k < num_effects; ++k) {
     std::string& why = e.not_simulated[static_cast<std::size_t>(k)];
     if (!effects[static_cast<std::size_t>(k)].is_active) why = "none of these tests depends on it";
-    else if (e.fingerprints.col(k).allFinite()) why.clear();
+    else if (e.fingerprints.col(k)(compared).allFinite()) why.clear();
     else if (why.empty()) why = "fewer than two packings could be compared";
   }
   return e;

@@ -35,7 +35,7 @@ struct EvidencePlan {
   double linear_step = 0.1;   ///< else, as a share of upper - lower
 };
 
-/// Over all targets; NaN where no packing gave the number.
+/// Over all targets; NaN where no packing gave the number, and in derivatives where none was asked for.
 struct SimulatedEvidence {
   Eigen::MatrixXd packings;              ///< (S, p) T at the point, packings that lack any of it left out
   Eigen::MatrixXd jacobian;              ///< (p, num_free) d T / d unit coordinate, mean over packings
@@ -50,10 +50,13 @@ struct SimulatedEvidence {
 /// Derivatives and fingerprints are taken packing by packing against the same packing at the point, so that
 /// differences between packings cancel; their scatter over packings is their variance. An effect needs two packings in which
 /// all numbers it is compared in exist; what a failed run lacks is left out, never replaced.
-/// @param evaluator  with MissingFeatures::keep
+/// @param at_point  gives all targets at the point, with MissingFeatures::keep
+/// @param around    gives the targets that are compared; may be the same
+/// @param compared  targets of which derivatives and fingerprints are wanted: held-out ones need none
 /// @return empty if the point itself gave fewer than two packings, or a stop or budget ended the runs
 /// @cost S + D (1 + 2 num_free + active effects) simulations for S residual and D derivative seeds
-std::optional<SimulatedEvidence> simulate_evidence(Evaluator& evaluator,
+std::optional<SimulatedEvidence> simulate_evidence(Evaluator& at_point, Evaluator& around,
+                                                   const std::vector<Eigen::Index>& compared,
                                                    const std::vector<Parameter>& parameters,
                                                    const std::vector<Target>& targets,
                                                    const Eigen::VectorXd& unit,

@@ -137,3 +137,22 @@ TEST_CASE("Members per job: every worker has a job, no job is wider than a pack"
   CHECK(members_per_job(1, 2, 8) == 1);
   CHECK(members_per_job(7, 1, 8) == 7);
 }
+
+TEST_CASE("Jobs: runs of like effort ride together, the longest first, every run once", "[calibrate][broker]") {
+  const std::vector<double> effort = {1.0, 9.0, 2.0, 8.0, 1.0};
+  const auto jobs = jobs_of_like_effort({0, 1, 2, 3, 4}, [&](std::size_t k) { return effort[k]; }, 2);
+  CHECK(jobs == std::vector<std::vector<std::size_t>>{{1, 3}, {2, 0}, {4}});
+  // without efforts the order stays
+  CHECK(jobs_of_like_effort({4, 2, 0}, nullptr, 2) == std::vector<std::vector<std::size_t>>{{4, 2}, {0}});
+}
+
+TEST_CASE("Run broker: efforts change no result and no order", "[calibrate][broker]") {
+  BrokerOptions options;
+  options.effort = [](const RunIdentity& i) { return static_cast<double>(std::hash<std::string>{}(i.material)); };
+  Laboratory lab("broker_effort", options);
+  std::vector<RunIdentity> wanted;
+  for (int k = 0; k < 12; ++k) wanted.push_back(point(0.3 + 0.01 * k));
+  const std::vector<RunRecord> records = lab.broker.run(wanted);
+  for (std::size_t k = 0; k < wanted.size(); ++k)
+    CHECK(records[k].features[0].value == simulate_formula(std::span(&wanted[k], 1)).front().features[0].value);
+}

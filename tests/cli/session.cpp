@@ -152,6 +152,14 @@ TEST_CASE("Session: a file that may not grow ends with exit code 1 and a whole s
   CHECK(resumed.exit_code != exit_internal);
 }
 
+TEST_CASE("Session: a file that cannot be written names the system's reason and what to do", "[cli][session]") {
+  const TempFolder folder("session_write");
+  fs::create_directories(folder.path() / "card.json.part");  // the draft's place is taken
+  CHECK_THROWS_WITH(write_file(folder.path() / "card.json", "{}"),
+                    Contains("card.json") && Contains("Is a directory") && Contains("--resume"));
+  CHECK_FALSE(fs::exists(folder.path() / "card.json"));
+}
+
 TEST_CASE("Session: Slurm's ways to write a time", "[cli][session]") {
   CHECK(seconds_of_walltime("30") == 1800.0);
   CHECK(seconds_of_walltime("30:15") == 1815.0);

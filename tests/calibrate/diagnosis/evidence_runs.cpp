@@ -101,7 +101,7 @@ TEST_CASE("Evidence: derivatives and fingerprints of power laws are exact, packi
   Problem problem;
   Evaluator evaluator = problem.evaluator(simulator_of(power_laws, 0.1));
   const Eigen::VectorXd unit = unit_start(problem.parameters);
-  const auto e = simulate_evidence(evaluator, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
+  const auto e = simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
   REQUIRE(e);
   const double span = std::log(100.0);
   CHECK((e->jacobian - exponents * span).cwiseAbs().maxCoeff() < 1e-10);
@@ -117,12 +117,27 @@ TEST_CASE("Evidence: derivatives and fingerprints of power laws are exact, packi
   CHECK(problem.ledger.num_done == 5 + 5 * (1 + 2 * 2 + 1));
 }
 
+TEST_CASE("Evidence: held-out numbers are simulated at the point only", "[diagnosis]") {
+  Problem problem;
+  problem.targets[3].holdout = true;
+  Evaluator all = problem.evaluator(simulator_of(power_laws, 0.1));
+  Evaluator fitted(losing(simulator_of(power_laws, 0.1), 3, [](double, std::uint64_t) { return true; }), problem.targets,
+                   "test", problem.ledger, TargetScope::fitted, MissingFeatures::keep);
+  const auto e = simulate_evidence(all, fitted, {0, 1, 2}, problem.parameters, problem.targets, unit_start(problem.parameters),
+                                   {step_to(0.5)}, plan_of(4));
+  REQUIRE(e);
+  CHECK(e->packings.allFinite());
+  CHECK(e->not_simulated[0].empty());
+  CHECK(e->fingerprints.topRows(3).allFinite());
+  CHECK_FALSE(std::isfinite(e->fingerprints(3, 0)));
+}
+
 TEST_CASE("Evidence: effects that no test depends on cost nothing and are said to be so", "[diagnosis]") {
   Problem problem;
   Evaluator evaluator = problem.evaluator(simulator_of(power_laws, 0.1));
   EffectStep idle = step_to(0.5);
   idle.is_active = false;
-  const auto e = simulate_evidence(evaluator, problem.parameters, problem.targets, unit_start(problem.parameters), {idle}, plan_of(4));
+  const auto e = simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit_start(problem.parameters), {idle}, plan_of(4));
   REQUIRE(e);
   CHECK(e->not_simulated[0] == "none of these tests depends on it");
   CHECK(problem.ledger.num_done == 4 + 4 * (1 + 2 * 2));
@@ -135,7 +150,7 @@ TEST_CASE("Evidence: costly effects are compared on the first packings only", "[
   costly.is_costly = true;
   EvidencePlan plan = plan_of(6);
   plan.costly_packings = 2;
-  const auto e = simulate_evidence(evaluator, problem.parameters, problem.targets, unit_start(problem.parameters), {costly}, plan);
+  const auto e = simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit_start(problem.parameters), {costly}, plan);
   REQUIRE(e);
   CHECK((e->fingerprints.col(0) - fingerprint).cwiseAbs().maxCoeff() < 1e-10);
   CHECK(problem.ledger.num_done == 6 + 6 * (1 + 2 * 2) + 2);
@@ -147,21 +162,21 @@ TEST_CASE("Evidence: what a failed test lacks is left out; an effect never compa
   const Eigen::VectorXd unit = unit_start(problem.parameters);
   SECTION("on some packings") {
     Evaluator evaluator = problem.evaluator(losing(whole, 1, [](double effect, std::uint64_t seed) { return effect > 0 && seed < 203; }));
-    const auto e = simulate_evidence(evaluator, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
+    const auto e = simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
     REQUIRE(e);
     CHECK(e->fingerprints(1, 0) == Approx(fingerprint[1]));
     CHECK(e->not_simulated[0].empty());
   }
   SECTION("on all") {
     Evaluator evaluator = problem.evaluator(losing(whole, 1, [](double effect, std::uint64_t) { return effect > 0; }));
-    const auto e = simulate_evidence(evaluator, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
+    const auto e = simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5));
     REQUIRE(e);
     CHECK(std::isnan(e->fingerprints(1, 0)));
     CHECK(e->not_simulated[0] == "test broke");
   }
   SECTION("at the point itself there is no evidence") {
     Evaluator evaluator = problem.evaluator(losing(whole, 1, [](double, std::uint64_t seed) { return seed != 100; }));
-    CHECK_FALSE(simulate_evidence(evaluator, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5)));
+    CHECK_FALSE(simulate_evidence(evaluator, evaluator, {0, 1, 2, 3}, problem.parameters, problem.targets, unit, {step_to(0.5)}, plan_of(5)));
   }
 }
 
