@@ -91,6 +91,17 @@ Eigen::VectorXd with_ties(const std::vector<SoilParameter>& parameters, Eigen::V
   return values;
 }
 
+void show_ties(const std::vector<SoilParameter>& parameters, FitSummary& summary) {
+  if (summary.parameters.empty()) return;
+  const Eigen::VectorXd values = with_ties(parameters, summary.values());
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const std::optional<Tie>& tie = parameters[k].tied_to;
+    if (!tie) continue;
+    summary.parameters[k].value = values[static_cast<Eigen::Index>(k)];
+    summary.parameters[k].expression = fmt::format("{}*{}", tie->factor, tie->parameter_id);
+  }
+}
+
 std::string provenance_sentence(const SoilData& soil) {
   std::array<int, 4> counts{};
   int num_fitted = 0;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibrate/fit_summary.hpp"
 #include "calibrate/parameters.hpp"
 #include "calibrate/soil_data.hpp"
 #include "calibrate/targets.hpp"
@@ -29,6 +30,10 @@ std::vector<Parameter> fit_parameters(const SoilData& soil);
 /// The same values with every tied parameter recomputed from its master, chains included.
 /// @pre values.size() == parameters.size(), ties without circles (load_soil refuses them)
 Eigen::VectorXd with_ties(const std::vector<SoilParameter>& parameters, Eigen::VectorXd values);
+
+/// Tied parameters are held during a fit and recomputed in every run: puts their values and expressions into the
+/// summary. Does nothing where the summary has no parameters.
+void show_ties(const std::vector<SoilParameter>& parameters, FitSummary& summary);
 
 /// For the first line of the report: "measured targets: 0 of 4 (0 %); the rest: 4 derived; 2 held
 /// out".

@@ -58,17 +58,6 @@ std::string criterion_text(const FitOptions& options) {
                      options.holdout_limit);
 }
 
-/// Tied parameters were held during the fit and recomputed in every run; the summary shall show it.
-void show_ties(const SoilData& soil, FitSummary& summary) {
-  const Eigen::VectorXd values = with_ties(soil.parameters, summary.values());
-  for (std::size_t k = 0; k < soil.parameters.size(); ++k) {
-    const std::optional<Tie>& tie = soil.parameters[k].tied_to;
-    if (!tie) continue;
-    summary.parameters[k].value = values[static_cast<Eigen::Index>(k)];
-    summary.parameters[k].expression = fmt::format("{}*{}", tie->factor, tie->parameter_id);
-  }
-}
-
 void write_card(const FitJob& job, const FitSummary& summary, const FitCardContext& card,
                 const std::filesystem::path& folder) {
   const ReportContext report{card.provenance_sentence +
@@ -159,7 +148,7 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   FitSummary summary = fit(fit_parameters(job.soil), fit_targets(job.soil), search, &confirm,
                            job.options, has_holdouts ? &holdout : nullptr);
   display.finish();
-  if (!summary.parameters.empty()) show_ties(job.soil, summary);
+  show_ties(job.soil.parameters, summary);
 
   // 4. write
   write_results(job, summary, card, session, folder, log);

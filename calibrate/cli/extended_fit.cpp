@@ -70,8 +70,9 @@ std::vector<std::string> write_extended_fits(const DiagnosisResult& result, cons
     const Simulator search = dem_simulator(soil, fidelity, context, TargetScope::fitted);
     const Simulator holdout = dem_simulator(soil, fidelity, context, TargetScope::holdouts);
     const bool has_holdouts = std::ranges::any_of(soil.targets, &SoilTarget::holdout);
-    const FitSummary summary =
+    FitSummary summary =
         fit(fit_parameters(soil), fit_targets(soil), search, nullptr, options, has_holdouts ? &holdout : nullptr);
+    show_ties(soil.parameters, summary);
     const FitCardContext card{.seed = options.seed,
                               .quick = diagnosis.preview,
                               .provenance_sentence = provenance_sentence(soil),

@@ -9,6 +9,8 @@
 
 #include "calibrate/cli/effect_choice.hpp"
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/extended_fit.hpp"
+#include "calibrate/cli/fit_card.hpp"
 #include "calibrate/cli/laboratory_plan.hpp"
 #include "calibrate/cli/twin_data.hpp"
 #include "calibrate/cli/twin_files.hpp"
@@ -191,6 +193,50 @@ TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures; r
   CHECK(again.exit_code == exit_done);
   CHECK(soil_test::read_text(folder / "run/diagnosis.json") == before);
   CHECK(Json::parse(soil_test::read_text(folder / "run/timing.json"))["runs_simulated"] == 0);
+}
+
+TEST_CASE("Diagnose: the applied model is a fit.json with the effect as a parameter, and ties follow", "[cli][diagnosis]") {
+  const TempFolder folder("diagnose_apply");
+  PackingStore packings(default_packing_folder());
+  const RunContext context{packings, 2};
+  TwinPlan plan;
+  plan.tests = {"unconfined_compression", "direct_tension"};
+  plan.effects = parse_effects({"bond_softening=1"});
+  plan.fidelity = Fidelity::preview;
+  SoilData made = make_twin(loamy_sand(), plan, context).soil;
+  std::erase_if(made.parameters, [](const SoilParameter& p) { return p.group == "effect"; });
+  DiagnosisResult result;
+  result.soils.push_back(soil_case(made));
+  SoilCase& soil = result.soils.front();
+  NamedEffect name;
+  for (std::size_t k = 0; k < soil.choices.size(); ++k)
+    if (soil.choices[k].candidate.id == "bond_softening") name.effect = k;
+  name.id = "bond_softening";
+  result.diagnosis.effects = {name};
+  soil.unit = unit_start(soil.parameters);
+  RefittedModel model;
+  model.refit.is_usable = true;
+  model.refit.unit = soil.unit;
+  model.refit.sizes = Eigen::VectorXd::Constant(1, 1.0);
+  soil.models = {RefittedModel{}, model};
+  DiagnosisContext diagnosis{.settings = diagnosis_settings(true, 1), .command = "calibrate diagnose", .preview = true};
+  const auto lines = write_extended_fits(result, diagnosis, context, folder.path());
+  REQUIRE(lines.size() == 1);
+  const FittedSet fit = read_fit_card(folder / "fit.json");
+  const auto value = [&](const char* id) {
+    return std::ranges::find(fit.parameters, id, &FittedSet::Value::name)->value;
+  };
+  const auto added = std::ranges::find(fit.parameters, "bond_softening", &FittedSet::Value::name);
+  REQUIRE(added != fit.parameters.end());
+  CHECK(added->role != "fixed");
+  CHECK(value("contact_modulus_Pa") == Approx(value("bond_modulus_Pa")));
+  CHECK(value("bond_cohesion_Pa") == Approx(1.5 * value("bond_tensile_strength_Pa")));
+  CHECK(std::ranges::find(fit.parameters, "rolling_friction", &FittedSet::Value::name) == fit.parameters.end());
+  CHECK(soil_test::read_text(folder / "fit_report.txt").find("1*bond_modulus_Pa") != std::string::npos);
+  // nothing named: nothing written
+  result.diagnosis.effects.clear();
+  CHECK(write_extended_fits(result, diagnosis, context, folder.path() / "none").front().find("nothing was named") != std::string::npos);
+  CHECK_FALSE(fs::exists(folder.path() / "none"));
 }
 
 TEST_CASE("Diagnose: data that cannot be diagnosed are refused or answered, never named", "[cli][diagnosis][bad_input]") {
