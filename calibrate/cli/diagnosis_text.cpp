@@ -157,7 +157,14 @@ std::string verdict_sentence(const DiagnosisResult& r) {
     case Verdict::set:
       return fmt::format("set: these data cannot tell which of {}{}{} is missing", fmt::join(d.set, ", "),
                          d.set_holds_none ? ", or nothing," : "", d.set_holds_other ? ", or something outside the catalogue," : "");
-    case Verdict::none: return "none: no gap larger than the noise, and effects of typical size would have been seen";
+    case Verdict::none: {
+      std::size_t seen = 0, all = 0;
+      for (const SoilDiagnosis& soil : d.soils) {
+        all += soil.scores.size();
+        seen += static_cast<std::size_t>(std::ranges::count(soil.scores, EffectDecision::absent, &EffectScore::decision));
+      }
+      return fmt::format("none: no gap larger than the noise; {} of {} candidates would have been seen at their typical size", seen, all);
+    }
     case Verdict::outside_catalogue:
       return "outside_catalogue: the residual is not noise, and none of the known effects explains it";
     case Verdict::inconclusive: break;

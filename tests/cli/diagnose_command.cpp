@@ -180,6 +180,12 @@ TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures; r
   INFO(card["sentence"]);
   CHECK(std::set<std::string>{"none", "set", "inconclusive"}.contains(card["verdict"]));
   CHECK(card["effects"].empty());
+  // no more is claimed than could have been seen
+  const auto& scores = card["soils"][0]["candidates"];
+  const auto num_absent = std::ranges::count_if(scores, [](const Json& c) { return c["decision"] == "absent"; });
+  CHECK(num_absent < 28);
+  if (card["verdict"] == "none")
+    CHECK(card["sentence"].get<std::string>().find(std::to_string(num_absent) + " of 28 candidates") != std::string::npos);
   CHECK(card["soils"][0]["numerical_gates"].size() == 4);
   CHECK(card["soils"][0]["candidates"].size() == 28);
   CHECK_FALSE(card["could_not_have_been_seen"].empty());
