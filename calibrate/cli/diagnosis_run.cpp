@@ -72,11 +72,11 @@ Eigen::VectorXd pooled_packing_variances(const SoilData& soil, const Eigen::Matr
   return pooled;
 }
 
-NoisePriors priors_of(const SoilCase& soil, const std::vector<Eigen::Index>& rows) {
+NoisePriors priors_of(const MeasuredCampaign& campaign, const Eigen::MatrixXd& packings,
+                      const std::vector<Eigen::Index>& rows) {
   NoisePriors priors;
-  priors.replicate_variances = soil.campaign.prior_variances(rows);
-  priors.packing_variances =
-      pooled_packing_variances(soil.campaign.means, soil.simulated.packings)(rows);
+  priors.replicate_variances = campaign.prior_variances(rows);
+  priors.packing_variances = pooled_packing_variances(campaign.means, packings)(rows);
   return priors;
 }
 
@@ -255,10 +255,8 @@ void DiagnosisRunner::fit_baseline(SoilCase& soil, Evaluator& evaluator, Evaluat
   for (int pass = 0; pass < settings_.num_baseline_passes; ++pass) {
     const auto near = simulate_evidence(evaluator, around, soil.fitted, soil.parameters, soil.targets, soil.unit, {}, plan);
     if (!near) return;
-    SoilCase draft = soil;
-    draft.simulated = *near;
     const Eigen::MatrixXd covariance =
-        noise_covariance(samples_of(soil.campaign, near->packings, rows), priors_of(draft, rows)).total();
+        noise_covariance(samples_of(soil.campaign, near->packings, rows), priors_of(soil.campaign, near->packings, rows)).total();
     const RefitProblem problem{soil.parameters, soil.targets, measured_means(soil), covariance,
                                finite_or_zero(near->jacobian), soil.fitted, plan.residual_seeds};
     const Refit better = refit(evaluator, problem, soil.unit, {}, {}, settings_.max_refit_steps);
@@ -299,11 +297,11 @@ void DiagnosisRunner::gather(SoilCase& soil, const std::optional<Eigen::VectorXd
   hold_at_bounds(soil, soil.simulated, soil.remarks);
   const auto rows = all_rows(soil);
   soil.covariance =
-      noise_covariance(samples_of(soil.campaign, soil.simulated.packings, rows), priors_of(soil, rows)).total();
+      noise_covariance(samples_of(soil.campaign, soil.simulated.packings, rows), priors_of(soil.campaign, soil.simulated.packings, rows)).total();
   soil.evidence.soil = soil.campaign.means.id;
   soil.evidence.model = linear_model(soil.campaign.means, soil.simulated, soil.fitted);
   soil.evidence.samples = samples_of(soil.campaign, soil.simulated.packings, soil.fitted);
-  soil.evidence.noise = priors_of(soil, soil.fitted);
+  soil.evidence.noise = priors_of(soil.campaign, soil.simulated.packings, soil.fitted);
   for (const CandidateChoice& c : soil.choices) soil.evidence.candidates.push_back(c.candidate);
   soil.gates = gates_of(soil);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "calibrate/diagnosis/thresholds.hpp"
 #include "calibrate/moderated_variances.hpp"
 
 namespace tilth {
@@ -135,7 +136,8 @@ void set_means(MeasuredCampaign& c) {
     Eigen::VectorXd prior(static_cast<Eigen::Index>(test.statistics.size()));
     for (std::size_t k = 0; k < test.statistics.size(); ++k)
       prior[static_cast<Eigen::Index>(k)] = c.prior_variances[test.statistics[k]];
-    const Eigen::VectorXd v = moderated_variances(test.replicates.transpose(), prior, 8.0);
+    const Eigen::VectorXd v = moderated_variances(test.replicates.transpose(), prior,
+                                                  diagnosis_thresholds::moderation_freedom);
     for (std::size_t k = 0; k < test.statistics.size(); ++k) {
       const auto j = static_cast<Eigen::Index>(k);
       SoilTarget& t = c.means.targets[static_cast<std::size_t>(test.statistics[k])];
