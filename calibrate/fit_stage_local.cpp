@@ -88,7 +88,7 @@ LeastSquaresProblem local_problem(FitContext& context, FrozenCounts& frozen) {
       residuals = fit_residuals(context, unit, *mean, num_seeds);
       return true;
     }
-    const auto secants = derivatives_at(context, context.search, unit, seeds);
+    const auto secants = search_derivatives_at(context, unit);
     if (!secants) return false;
     for (const std::size_t j : secants->frozen) ++frozen[j];
     residuals = fit_residuals(context, unit, secants->base, num_seeds);

@@ -14,6 +14,8 @@ namespace {
 
 // Longer error bars than this times the one with all others held are warned about.
 constexpr double large_inflation = 100.0;
+// So are error bars that the noise of the derivatives makes longer than this times.
+constexpr double large_noise_factor = 1.25;
 
 bool is_frozen(const FitContext& context, std::size_t j) {
   const auto& frozen = context.secants->frozen;
@@ -73,6 +75,29 @@ void warn_about_value(FitContext& context, const FittedParameter& fitted) {
   if (!fitted.no_error_bar.empty()) {
     warnings.push_back(
         fmt::format("no error bar for {} because {}", fitted.name, fitted.no_error_bar));
+  }
+}
+
+void warn_about_noise(FitContext& context) {
+  const LinearUncertainty& u = *context.uncertainty;
+  std::string names;
+  std::size_t j = 0;
+  for (const FittedParameter& p : context.summary.parameters) {
+    if (!p.estimate) continue;
+    const double factor = u.noise_factor[static_cast<Eigen::Index>(j++)];
+    if (!p.no_error_bar.empty() || !(factor > large_noise_factor)) continue;
+    names += fmt::format("{}{} ({:.2g} times)", names.empty() ? "" : ", ", p.name, factor);
+  }
+  const std::string remedy = "more packings (num_search_seeds) would make up for it";
+  if (!names.empty()) {
+    context.summary.warnings.push_back(fmt::format(
+        "neighbouring runs scatter so much that derivatives are uncertain, which lengthens the error bar of {}; {}",
+        names, remedy));
+  }
+  if (u.num_drowned > 0) {
+    context.summary.warnings.push_back(
+        fmt::format("the scatter of neighbouring runs alone explains the derivatives along {} of the null "
+                    "directions; {}", u.num_drowned, remedy));
   }
 }
 
@@ -166,6 +191,7 @@ void report_parameters(FitContext& context) {
   std::size_t next_free = 0;
   for (std::size_t i = 0; i < context.parameters.size(); ++i) report_one(context, i, next_free);
   if (!context.uncertainty) return;
+  warn_about_noise(context);
   report_covariance(context);
   report_near_null_direction(context);
 }

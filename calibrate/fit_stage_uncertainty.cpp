@@ -49,15 +49,17 @@ void update_uncertainty(FitContext& context) {
   if (!context.optimum || !context.optimum->from_local_search) return;
   const double scale = sigma_scale(context);
   if (std::isnan(scale)) return;
-  context.secants = derivatives_at(
-      context, context.search, context.optimum->unit,
-      stage_seeds(context.options, SeedUse::search, context.options.num_search_seeds));
+  context.secants = search_derivatives_at(context, context.optimum->unit);
   if (!context.secants) return;
+  Eigen::MatrixXd noise = noise_in_products(context, *context.secants);
   Eigen::MatrixXd jacobian =
       residual_jacobian(context, context.secants->jacobian, context.optimum->num_seeds);
-  if (context.options.rescale_sigma) jacobian /= scale;
+  if (context.options.rescale_sigma) {
+    jacobian /= scale;
+    noise /= scale * scale;
+  }
   context.uncertainty = linear_uncertainty(jacobian, residual_covariance(context),
-                                           derivative_error_share(context.options));
+                                           derivative_error_share(context.options), noise);
 }
 
 Eigen::VectorXd errors_from_packings(const FitContext& context) {

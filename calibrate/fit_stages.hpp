@@ -63,6 +63,9 @@ struct FitContext {
   int num_bias_seeds = 0;              ///< completed confirming runs behind bias; 0 = none
   std::optional<Optimum> optimum{};
   std::optional<Secants> secants{};                ///< at the optimum
+  /// Secants::second_differences of every point of a local search, of secants that were not widened.
+  std::map<std::vector<double>, Eigen::MatrixXd> second_differences{};
+  Eigen::VectorXi secant_doublings{};  ///< (num_free), of the next secants on the search packings
   std::optional<LinearUncertainty> uncertainty{};  ///< at the optimum
   std::optional<std::vector<Emulator>> emulators{};  ///< of all search runs, see final_emulators()
   std::vector<Profile> profiles{};                 ///< of the free parameters, or empty
@@ -78,6 +81,15 @@ std::vector<std::uint64_t> stage_seeds(const FitOptions& options, SeedUse use, i
 std::optional<Secants> derivatives_at(const FitContext& context, Evaluator& evaluator,
                                       const Eigen::VectorXd& unit,
                                       std::span<const std::uint64_t> seeds);
+/// Derivatives on the search packings. With secants, those of parameters whose derivatives are noise to
+/// more than a tenth of their square are doubled, at most twice and to a quarter of the range, and halved
+/// again for the next point where the narrower ones would do.
+std::optional<Secants> search_derivatives_at(FitContext& context, const Eigen::VectorXd& unit);
+/// What the noise of the runs alone adds to J'J of residual_jacobian() for these secants, (num_free, num_free):
+///   sum_k v_k noise_shape / sigma_total_k^2,   v_k = median of d_k^2 / 6 / 0.455
+/// over all second differences d of the local searches that were not widened. A response that bends over
+/// its secants counts as noise, hence the median. Empty for extrapolated derivatives.
+Eigen::MatrixXd noise_in_products(const FitContext& context, const Secants& secants);
 /// Singular values below this share of the largest drown in the error of the derivatives.
 double derivative_error_share(const FitOptions& options);
 

@@ -38,21 +38,30 @@ Members members_around(const Eigen::VectorXd& unit, const Eigen::VectorXd& steps
   return members;
 }
 
-void fill_column(Secants& secants, std::size_t j, double step, const Mean& plus,
-                 const Mean& minus) {
-  auto column = secants.jacobian.col(static_cast<Eigen::Index>(j));
+// base_share[j]: what the derivative takes of the run at the point itself.
+void fill_column(Secants& secants, std::size_t j, double step, const Mean& plus, const Mean& minus,
+                 Eigen::VectorXd& base_share) {
+  const auto index = static_cast<Eigen::Index>(j);
+  auto column = secants.jacobian.col(index);
   if (plus && minus) {
     column = (*plus - *minus) / (2.0 * step);
+    secants.noise_shape(index, index) = 0.5 / (step * step);
+    const Eigen::Index num = secants.second_differences.cols();
+    secants.second_differences.conservativeResize(column.size(), num + 1);
+    secants.second_differences.col(num) = *plus - 2.0 * secants.base + *minus;
     return;
   }
   if (plus) {
     column = (*plus - secants.base) / step;
+    base_share[index] = -1.0 / step;
   } else if (minus) {
     column = (secants.base - *minus) / step;
+    base_share[index] = 1.0 / step;
   } else {
     secants.frozen.push_back(j);
     return;
   }
+  secants.noise_shape(index, index) = 1.0 / (step * step);
   secants.one_sided.push_back(j);
 }
 
@@ -85,13 +94,17 @@ std::optional<Secants> paired_secants(Evaluator& evaluator, std::span<const Para
   Secants secants;
   secants.base = *means.front();
   secants.jacobian = Eigen::MatrixXd::Zero(secants.base.size(), unit.size());
+  secants.second_differences.resize(secants.base.size(), 0);
+  secants.noise_shape = Eigen::MatrixXd::Zero(unit.size(), unit.size());
+  Eigen::VectorXd base_share = Eigen::VectorXd::Zero(unit.size());
   const auto mean_at = [&](int column) {
     return column < 0 ? Mean{} : means[static_cast<std::size_t>(column)];
   };
   for (std::size_t j = 0; j < members.plus.size(); ++j) {
     fill_column(secants, j, steps[static_cast<Eigen::Index>(j)], mean_at(members.plus[j]),
-                mean_at(members.minus[j]));
+                mean_at(members.minus[j]), base_share);
   }
+  secants.noise_shape += base_share * base_share.transpose();
   return secants;
 }
 

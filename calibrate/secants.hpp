@@ -20,6 +20,12 @@ struct Secants {
   Eigen::MatrixXd jacobian;  ///< d base / d unit coordinate (num_targets, num_free); 0 if frozen
   std::vector<std::size_t> one_sided;  ///< free parameters with one side only: first order
   std::vector<std::size_t> frozen;     ///< free parameters with no side: both perturbed runs failed
+  /// m(u + h e_j) - 2 m(u) + m(u - h e_j) of parameters with both sides: (num_targets, num_central).
+  /// Where the response is straight its variance is 6 v, v = variance of m among neighbouring points.
+  Eigen::MatrixXd second_differences;
+  /// Noise of the derivatives: covariance of d m_k / d u_i and d m_k / d u_j = v_k noise_shape(i, j).
+  /// 1 / (2 h_j^2) for two sides, 2 / h_j^2 for one; one-sided ones have the run at the point in common.
+  Eigen::MatrixXd noise_shape;  ///< (num_free, num_free)
 };
 
 /// Half-widths of the secants in the unit cube: a parameter's secant_step / its span, else

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +13,7 @@
 namespace tilth {
 namespace {
 
+constexpr double least_signal_share = 1.0 / 3.0;  // the correction trebles an error bar at most
 constexpr double normal_95 = 1.959963984540054;
 
 // "a", "a^0.5": one factor of a product; the sign is said by "x" or "/".
@@ -23,6 +26,32 @@ std::string factor(const std::string& name, double exponent) {
 std::string term(const std::string& name, double coefficient) {
   const double size = std::abs(coefficient);
   return std::abs(size - 1.0) < 0.05 ? name : fmt::format("{:.2g} {}", size, name);
+}
+
+// Directions of the data in which the derivatives are signal, and those that drown in their noise.
+struct SignalShares {
+  Eigen::MatrixXd kept;     // orthonormal columns, in the coordinates of the kept singular values
+  Eigen::VectorXd shares;   // of the signal, one per column of kept
+  Eigen::MatrixXd drowned;  // the other columns
+};
+
+SignalShares signal_shares(const Eigen::MatrixXd& scaled, const Eigen::MatrixXd& noise) {
+  const Eigen::Index n = scaled.cols();
+  if (n == 0 || noise.size() == 0) {
+    return {Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Ones(n), Eigen::MatrixXd(n, 0)};
+  }
+  const Eigen::MatrixXd share = Eigen::MatrixXd::Identity(n, n) - scaled.transpose() * noise * scaled;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(share);
+  const Eigen::Index num_drowned = (solver.eigenvalues().array() <= 0.0).count();  // smallest first
+  return {solver.eigenvectors().rightCols(n - num_drowned),
+          solver.eigenvalues().tail(n - num_drowned).cwiseMax(least_signal_share),
+          solver.eigenvectors().leftCols(num_drowned)};
+}
+
+// An orthonormal basis of what the columns span. They are independent.
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns.colwise().normalized());
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
 }  // namespace
@@ -40,7 +69,7 @@ Eigen::VectorXd propagated_deviation(const Eigen::MatrixXd& jacobian,
 
 LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
                                      const Eigen::MatrixXd& residual_covariance,
-                                     double relative_limit) {
+                                     double relative_limit, const Eigen::MatrixXd& noise) {
   const Eigen::Index q = jacobian.cols();
   // Rows of zeros make V square when there are fewer residuals than parameters.
   const Eigen::Index num_rows = std::max(jacobian.rows(), q);
@@ -53,12 +82,25 @@ LinearUncertainty linear_uncertainty(const Eigen::MatrixXd& jacobian,
   const Eigen::Index num_kept = (s.array() >= limit).count();  // sorted, largest first
   const Eigen::MatrixXd u = svd.matrixU().topRows(jacobian.rows()).leftCols(num_kept);
   const Eigen::MatrixXd v = svd.matrixV().leftCols(num_kept);
-  const Eigen::MatrixXd gain = v * s.head(num_kept).cwiseInverse().asDiagonal() * u.transpose();
+  const Eigen::MatrixXd scaled = v * s.head(num_kept).cwiseInverse().asDiagonal();
+  const SignalShares signal = signal_shares(scaled, noise);
 
   LinearUncertainty result;
-  result.gain = gain;
-  result.covariance = gain * residual_covariance * gain.transpose();
+  const Eigen::MatrixXd corrected =
+      scaled * signal.kept * signal.shares.cwiseInverse().asDiagonal() * signal.kept.transpose();
+  result.gain = corrected * u.transpose();
+  result.covariance = result.gain * residual_covariance * result.gain.transpose();
+  const Eigen::MatrixXd naive = scaled * signal.kept * signal.kept.transpose() * u.transpose();
+  result.noise_factor = (result.covariance.diagonal().array() /
+                         (naive * residual_covariance * naive.transpose()).diagonal().array())
+                            .sqrt();
+  result.num_drowned = signal.drowned.cols();
   result.null_space = svd.matrixV().rightCols(q - num_kept);
+  if (signal.drowned.cols() > 0) {
+    Eigen::MatrixXd null(q, q - num_kept + signal.drowned.cols());
+    null << result.null_space, scaled * signal.drowned;
+    result.null_space = orthonormal(null);
+  }
   result.null_share = result.null_space.rowwise().squaredNorm();
   return result;
 }

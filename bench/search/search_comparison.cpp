@@ -5,13 +5,15 @@
 //
 //     build/release/bin/search_comparison          # 30 twins per data case
 //     build/release/bin/search_comparison 5        # fewer
-//     build/release/bin/search_comparison --grains # three twins of the DEM problem itself; not timed yet
+//     build/release/bin/search_comparison --grains [PART OF A NAME]...  # three twins of the DEM problem itself; 10 core-minutes per method
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -167,11 +169,18 @@ std::vector<Method> methods_on_grains(const StandIn& stand_in) {
   return methods;
 }
 
-void compare_on_grains(StandIn stand_in, const Eigen::VectorXd& noise) {
+// Only methods with one of `wanted` in their name; all if it is empty.
+void compare_on_grains(StandIn stand_in, const Eigen::VectorXd& noise, std::span<char*> wanted) {
   stand_in.most_simulations = 150;
   stand_in.grains = loamy_sand_grains();
+  std::vector<Method> methods = methods_on_grains(stand_in);
+  std::erase_if(methods, [wanted](const Method& method) {
+    return !wanted.empty() && std::none_of(wanted.begin(), wanted.end(), [&](const char* part) {
+      return method.name.find(part) != std::string::npos;
+    });
+  });
   print_case("The grains themselves, laboratory data, three twins, at most 150 simulations", stand_in, noise, 3,
-             methods_on_grains(stand_in));
+             methods);
 }
 
 void print_stand_in(const StandIn& stand_in) {
@@ -194,7 +203,7 @@ int main(int num_arguments, char** arguments) {
   const bool on_grains = num_arguments > 1 && std::string(arguments[1]) == "--grains";
   const int num_twins = num_arguments > 1 && !on_grains ? std::atoi(arguments[1]) : 30;
   if (num_twins < 1) {
-    fmt::print(stderr, "usage: search_comparison [number of twins | --grains]\n");
+    fmt::print(stderr, "usage: search_comparison [number of twins | --grains [PART OF A METHOD'S NAME]...]\n");
     return 2;
   }
   try {
@@ -205,7 +214,7 @@ int main(int num_arguments, char** arguments) {
     Eigen::VectorXd laboratory = Eigen::VectorXd::Constant(4, 0.05);
     laboratory[0] = 1.5 * std::numbers::pi / 180.0;
     if (on_grains) {
-      compare_on_grains(stand_in, laboratory);
+      compare_on_grains(stand_in, laboratory, std::span(arguments, static_cast<std::size_t>(num_arguments)).subspan(2));
       return 0;
     }
     Eigen::VectorXd literature(4);

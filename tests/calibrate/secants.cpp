@@ -114,3 +114,42 @@ TEST_CASE("Secants: a step stated by the parameter wins over the options, in the
   REQUIRE_THAT(steps[1], WithinAbs(0.04, 1e-15));
   REQUIRE_THAT(steps[2], WithinAbs(0.2, 1e-15));
 }
+
+TEST_CASE("Secants: the noise of single runs is read from second differences and carried to the derivatives",
+          "[calibrate][secants]") {
+  // Features that do not depend on the parameters, but every run is off by a normal number: d is -2 m(u) and two others.
+  constexpr double scatter = 0.05;
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(3, 3);
+  Eigen::MatrixXd shape;
+  double squares = 0.0;
+  constexpr int num_points = 400;
+  for (int point = 0; point < num_points; ++point) {
+    std::uint64_t run = static_cast<std::uint64_t>(point) << 32;
+    const Simulator noisy = [&](const Eigen::MatrixXd& p, std::span<const std::uint64_t> s) {
+      std::vector<Evaluation> runs = simulator_of([](const Eigen::VectorXd&) { return soil_formula(soil_truth()); })(p, s);
+      for (Evaluation& r : runs) {
+        ++run;
+        for (Eigen::Index k = 0; k < r.features.size(); ++k)
+          r.features[k] *= std::exp(scatter * normal_number(5, run, static_cast<std::uint64_t>(k)));
+      }
+      return runs;
+    };
+    Bench bench;
+    const auto secants = bench.run(noisy, Eigen::Vector3d(0.02, 0.5, 0.99), 0.05);  // two one-sided
+    REQUIRE(secants->one_sided.size() == 2);
+    REQUIRE(secants->second_differences.cols() == 1);
+    squares += secants->second_differences.squaredNorm();
+    products += secants->jacobian.transpose() * secants->jacobian;
+    shape = secants->noise_shape;
+  }
+  constexpr double num_values = 6.0 * num_points;         // six features
+  constexpr double variance = scatter * scatter / 2.0;    // of a mean over two packings
+  const double error = std::sqrt(2.0 / num_values);       // of a mean of squares, relative
+  REQUIRE(std::abs(squares / num_values / 6.0 / variance - 1.0) < 4.0 * error);
+  const Eigen::MatrixXd found = products / num_values / variance;
+  REQUIRE((found - shape).cwiseAbs().maxCoeff() < 4.0 * error * shape.maxCoeff());
+  // Up and down from one run: the error in common pulls them apart.
+  REQUIRE(shape(0, 2) == Approx(-1.0 / (0.05 * 0.05)));
+  REQUIRE(shape(1, 1) == Approx(0.5 / (0.05 * 0.05)));
+  REQUIRE(shape(0, 0) == Approx(2.0 / (0.05 * 0.05)));
+}

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/calibrate/formula_models.hpp"
 
@@ -82,4 +83,35 @@ TEST_CASE("Uncertainty: a small share of a null direction that outweighs the err
   REQUIRE_FALSE(found.is_fixed(1));
   const Eigen::MatrixXd apart = Eigen::Vector2d(0.0, 100.0).asDiagonal();
   REQUIRE(linear_uncertainty(apart, Eigen::MatrixXd::Identity(2, 2)).is_fixed(1));
+}
+
+TEST_CASE("Uncertainty: noise of the derivatives is taken out of J'J and lengthens the error bar",
+          "[calibrate][uncertainty]") {
+  Eigen::MatrixXd j(4, 2);
+  j << 30, 1, 5, 20, -7, 3, 2, 2;
+  Eigen::MatrixXd noise(2, 2);
+  noise << 200, 30, 30, 90;
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(4, 4);
+  const LinearUncertainty found = linear_uncertainty(j, identity, 1e-3, noise);
+  const Eigen::MatrixXd signal = (j.transpose() * j - noise).inverse();
+  const Eigen::MatrixXd exact = signal * j.transpose() * j * signal;
+  REQUIRE((found.covariance - exact).norm() < 1e-13 * exact.norm());
+  const LinearUncertainty naive = linear_uncertainty(j, identity);
+  REQUIRE(std::abs(found.noise_factor[1] - std::sqrt(exact(1, 1) / naive.covariance(1, 1))) < 1e-13);
+  REQUIRE(naive.noise_factor == Eigen::Vector2d::Ones());
+}
+
+TEST_CASE("Uncertainty: derivatives that noise alone explains fix nothing", "[calibrate][uncertainty]") {
+  const Eigen::MatrixXd j = Eigen::Vector2d(40.0, 20.0).asDiagonal();
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(2, 2);
+  const auto with_noise = [&](double of_second) {
+    const Eigen::MatrixXd noise = Eigen::Vector2d(0.0, of_second).asDiagonal();
+    return linear_uncertainty(j, identity, 1e-3, noise);
+  };
+  REQUIRE(with_noise(401.0).num_drowned == 1);
+  REQUIRE(with_noise(401.0).null_share[1] == Approx(1.0));
+  REQUIRE(with_noise(401.0).is_fixed(0));
+  // A share of the signal of 1/2: J'J = 400 is 200 of signal; of less than 1/3: trebled, no more.
+  REQUIRE(with_noise(200.0).covariance(1, 1) == Approx(400.0 / (200.0 * 200.0)));
+  REQUIRE(with_noise(390.0).covariance(1, 1) == Approx(9.0 / 400.0));
 }
