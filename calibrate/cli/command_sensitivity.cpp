@@ -47,6 +47,10 @@ void add_sensitivity_options(CLI::App& command, SensitivityCommandOptions& o) {
   CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils");
   command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
       ->excludes(soil);
+  command.add_option("--tests", o.tests,
+                     "these tests with all their features, instead of the soil's own: laboratory, bed, sweep, "
+                     "all or test names, separated by commas")
+      ->delimiter(',');
   command.add_option("--method", o.method, "morris or sobol");
   command.add_option("--samples", o.samples,
                      "trajectories (morris) or rows (sobol); powers of two are spread best");
@@ -91,7 +95,8 @@ int run_sensitivity_command(const SensitivityCommandOptions& o, const std::strin
       .soil_id = study.soil.id,
       .command = command_line,
       .inputs = study.inputs,
-      .parameters = study.parameters};
+      .parameters = study.parameters,
+      .tests = study.tests};
   write_results(study, summary, card, folder);
   write_file(folder / "timing.json", session.timing_json(command_line));
   if (session.should_stop())

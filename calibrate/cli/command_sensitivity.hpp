@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "calibrate/cli/run_session.hpp"
 
@@ -17,6 +18,7 @@ struct SensitivityCommandOptions {
   std::string soil;
   std::string soil_folder;
   std::string config;
+  std::vector<std::string> tests;  ///< words of chosen_tests(); empty: the tests of the soil's own tables
   std::string method;
   std::optional<int> samples;
   std::optional<int> levels;

@@ -12,6 +12,8 @@
 namespace tilth {
 namespace {
 
+constexpr const char* sweep_id = "sweep_tillage";
+
 /// One specimen of a test: how it is run and what is read from it.
 struct PlannedSpecimen {
   std::string test_id;
@@ -19,12 +21,13 @@ struct PlannedSpecimen {
   std::vector<ConditionNumbers> numbers;
   std::vector<std::string> observables;
   bool holdout = false;
+  SigmaKind sigma_kind = SigmaKind::log;  // absolute for numbers that may be negative
 };
 
 PlannedSpecimen sheared(const char* test, const char* stem, double stress_Pa, std::vector<std::string> observables,
                         bool holdout) {
   return {test, fmt::format("{}_{:.0f}_kPa", stem, stress_Pa / 1e3), {{"normal_stress_Pa", {stress_Pa}}},
-          std::move(observables), holdout};
+          std::move(observables), holdout, SigmaKind::log};
 }
 
 std::vector<PlannedSpecimen> element_tests() {
@@ -58,10 +61,33 @@ std::vector<PlannedSpecimen> bed_tests() {
           {"angle_of_repose", "heap", {}, {"repose_angle_rad"}}};
 }
 
-std::vector<PlannedSpecimen> all_specimens() {
+/// The default sweep at 100 mm and 3.2 km/h; all sites are of one run.
+std::vector<PlannedSpecimen> field_tests() {
+  const std::vector<ConditionNumbers> pass = {{"tool_depth_m", {0.1}}, {"speed_m_per_s", {0.889}}};
+  std::vector<PlannedSpecimen> all = {
+      {sweep_id, "sweep", pass, {"draught_N", "furrow_area_m2", "ridge_area_m2", "disturbed_area_m2"}}};
+  for (const double depth_m : {0.02, 0.05, 0.08})
+    for (const double aside_m : {0.0, 0.05}) {
+      PlannedSpecimen site{sweep_id, fmt::format("sweep@{:g}m_{:g}m", depth_m, aside_m), pass,
+                           {"forward_displacement_m", "lateral_displacement_m", "vertical_displacement_m"},
+                           false, SigmaKind::absolute};
+      site.numbers.push_back({"tracer_depth_m", {depth_m}});
+      site.numbers.push_back({"tracer_lateral_m", {aside_m}});
+      all.push_back(std::move(site));
+    }
+  return all;
+}
+
+std::vector<PlannedSpecimen> laboratory_specimens() {
   std::vector<PlannedSpecimen> all = element_tests();
   for (auto* more : {&steel_tests, &bed_tests})
     for (PlannedSpecimen& s : more()) all.push_back(std::move(s));
+  return all;
+}
+
+std::vector<PlannedSpecimen> all_specimens() {
+  std::vector<PlannedSpecimen> all = laboratory_specimens();
+  for (PlannedSpecimen& s : field_tests()) all.push_back(std::move(s));
   return all;
 }
 
@@ -74,17 +100,22 @@ std::vector<std::string> tests_of(const std::vector<PlannedSpecimen>& specimens)
 
 }  // namespace
 
-std::vector<std::string> laboratory_tests() { return tests_of(all_specimens()); }
+std::vector<std::string> laboratory_tests() { return tests_of(laboratory_specimens()); }
 
-std::vector<std::string> chosen_tests(const std::vector<std::string>& words) {
-  const std::vector<std::string> known = laboratory_tests();
+std::vector<std::string> chosen_tests(const std::vector<std::string>& words, FieldTests field) {
+  std::vector<std::string> known = laboratory_tests();
   std::vector<std::string> words_of_choice = {"laboratory", "bed", "all"}, chosen, problems;
+  if (field == FieldTests::sweep) {
+    known.emplace_back(sweep_id);
+    words_of_choice.emplace_back("sweep");
+  }
   words_of_choice.insert(words_of_choice.end(), known.begin(), known.end());
   for (const std::string& word : words) {
     std::vector<std::string> meant = {word};
     if (word == "laboratory") meant = tests_of(element_tests());
     else if (word == "bed") meant = tests_of(bed_tests());
     else if (word == "all") meant = known;
+    else if (word == "sweep" && field == FieldTests::sweep) meant = {sweep_id};
     else if (std::ranges::find(known, word) == known.end())
       problems.push_back(unknown_name_sentence("test", word, words_of_choice));
     for (const std::string& id : meant)
@@ -108,7 +139,7 @@ void set_laboratory(SoilData& soil, std::span<const std::string> tests) {
       t.observable_id = observable;
       t.condition_id = s.condition_id;
       t.sigma = 1.0;
-      t.sigma_kind = SigmaKind::log;
+      t.sigma_kind = s.sigma_kind;
       t.holdout = s.holdout;
       t.observation_groups = {s.test_id + "/" + observable + "/" + s.condition_id};
       soil.targets.push_back(t);

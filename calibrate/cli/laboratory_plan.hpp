@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
-// The laboratory of twins and of advice: which numbers of which tests under which conditions.
+// The laboratory of twins, of advice and of sensitivity studies: which numbers of which tests under which conditions.
 #pragma once
 
 #include <span>
@@ -11,13 +11,16 @@
 
 namespace tilth {
 
-/// Tests of the laboratory: those `--tests` may name.
+/// Tests of the laboratory, without the soil bin.
 std::vector<std::string> laboratory_tests();
 
+/// Is the soil bin to be had beside the laboratory?
+enum class FieldTests { none, sweep };
+
 /// The tests a list of words stands for: test ids, "laboratory" (element tests without steel), "bed" (cone, vane,
-/// heap), "all".
+/// heap), "sweep" (the soil bin, if it is to be had), "all".
 /// @throws ConfigError naming the known words
-std::vector<std::string> chosen_tests(const std::vector<std::string>& words);
+std::vector<std::string> chosen_tests(const std::vector<std::string>& words, FieldTests field = FieldTests::none);
 
 /// Conditions and targets of the chosen tests, put in the place of the soil's own. Values are 0 and sigmas 1: they
 /// are to be filled in. One condition per rig is held out: an interpolation point, for proofs.

@@ -21,6 +21,7 @@ struct SensitivityCardContext {
   std::string command;
   std::vector<std::filesystem::path> inputs;
   std::vector<Parameter> parameters;
+  std::vector<std::string> tests;  ///< of --tests, or empty
 };
 
 /// The file as JSON text, schema "tilth.sensitivity/1".
@@ -39,6 +40,7 @@ struct SavedStudy {
   int num_packings = 0;
   std::uint64_t seed = 0;
   bool preview = false;
+  std::vector<std::string> tests;
   std::vector<std::pair<std::string, std::string>> inputs;  ///< file name, SHA-256
 };
 

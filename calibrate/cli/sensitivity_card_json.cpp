@@ -109,6 +109,7 @@ std::string sensitivity_json(const SensitivitySummary& s, const SensitivityCardC
   if (c.report.preview) card["warning"] = preview_sentence(c.report);
   card["provenance"] = c.report.provenance;
   card["study"] = study_json(s);
+  if (!c.tests.empty()) card["study"]["tests"] = c.tests;
   card["advice"] = advice(s);
   card["features"] = Json::array();
   for (const FeatureSensitivity& f : s.features) card["features"].push_back(feature_json(s, f));
@@ -133,6 +134,7 @@ std::string sensitivity_config_json(const SensitivityStudy& study) {
                            {"num_packings", o.packings.num_packings},
                            {"seed", o.packings.first_seed},
                            {"num_resamples", o.num_resamples}};
+  if (!study.tests.empty()) config["sensitivity"]["tests"] = study.tests;
   return config.dump(2) + "\n";
 }
 
@@ -150,6 +152,7 @@ SavedStudy read_saved_study(const std::filesystem::path& run_folder) {
     saved.inputs.emplace_back(input.text("path", ""), input.text("sha256", ""));
   if (auto study = card.object("study")) {
     saved.method = study->required_text("method").value_or("");
+    saved.tests = study->texts("tests");
     saved.num_rows = static_cast<int>(study->integer("samples_asked", 0, 1, 1 << 24));
     saved.levels = static_cast<int>(study->integer("levels", 4, 2, 1 << 20));
     saved.num_packings = static_cast<int>(study->integer("num_packings", 1, 1, 1000));

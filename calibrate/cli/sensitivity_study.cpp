@@ -6,6 +6,7 @@
 
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/file_hash.hpp"
+#include "calibrate/cli/laboratory_plan.hpp"
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/sensitivity_card.hpp"
 #include "calibrate/cli/soil_choice.hpp"
@@ -34,11 +35,14 @@ void read_soil(const SensitivityCommandOptions& o, SensitivityStudy& study) {
     apply_run_config(o.config, study.soil, not_used);
     study.inputs.emplace_back(o.config);
   }
+  if (!study.tests.empty()) set_laboratory(study.soil, study.tests);
   (void)material_of(study.soil, nominal_values(study.soil));
   (void)plan_tests(study.soil, study.fidelity);
   study.parameters = fit_parameters(study.soil);
   study.targets = fit_targets(study.soil);
-  study.provenance = provenance_sentence(study.soil);
+  study.provenance = study.tests.empty()
+                         ? provenance_sentence(study.soil)
+                         : "nothing measured is compared: features of tests chosen with --tests";
 }
 
 void read_method(const SensitivityCommandOptions& o, SensitivityOptions& options,
@@ -60,6 +64,11 @@ void read_new_study(const SensitivityCommandOptions& o, SensitivityStudy& study,
                     Problems& problems) {
   SensitivityOptions& options = study.options;
   read_method(o, options, problems);
+  try {
+    if (!o.tests.empty()) study.tests = chosen_tests(o.tests, FieldTests::sweep);
+  } catch (const ConfigError& e) {
+    append(e.sentences(), problems);
+  }
   study.fidelity = o.quick ? Fidelity::preview : Fidelity::search;
   options.num_rows = o.samples.value_or(default_num_rows(options.method, o.quick));
   options.levels = o.levels.value_or(options.levels);
@@ -89,6 +98,9 @@ void read_extended_study(const SensitivityCommandOptions& o, const SavedStudy& s
   options.levels = saved.levels;
   options.packings = {saved.seed, saved.num_packings};
   options.num_rows = o.samples.value_or(2 * saved.num_rows);
+  study.tests = saved.tests;
+  if (!o.tests.empty() && chosen_tests(o.tests, FieldTests::sweep) != saved.tests)
+    problems.emplace_back("--tests: the study in --out is of other tests; they cannot change");
   study.fidelity = saved.preview ? Fidelity::preview : Fidelity::search;
   if (!o.method.empty()) {
     const std::string kept = options.method == SensitivityMethod::morris ? "morris" : "sobol";

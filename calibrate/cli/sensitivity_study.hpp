@@ -19,6 +19,7 @@ struct SensitivityStudy {
   std::vector<Parameter> parameters;
   std::vector<Target> targets;
   std::string provenance;
+  std::vector<std::string> tests;  ///< chosen with --tests; empty: those of the soil's tables
   Fidelity fidelity = Fidelity::search;
   SensitivityOptions options;
   std::vector<std::filesystem::path> inputs;

@@ -67,6 +67,8 @@ TEST_CASE("Sensitivity command: all mistakes are listed at once, and nothing is 
   CHECK(run({"sensitivity", "--soil", "loamy_sand", "--method", "morris", "--emulator"})
             .says({"--emulator: goes with --method sobol only"}));
   CHECK(run({"sensitivity", "--soil", "loamy_sand", "--extend"}).says({"--out is missing"}));
+  CHECK(run({"sensitivity", "--soil", "loamy_sand", "--tests", "swep,bed"})
+            .says({"2 problems", "--method is missing", "did you mean sweep?"}));
   CHECK_FALSE(fs::exists(folder / "run"));
 }
 
@@ -122,6 +124,28 @@ TEST_CASE("Sensitivity command: Morris writes tables and figures, and --extend k
   const std::string after = read_text(path / "samples.csv");
   CHECK(after.starts_with(before));
   CHECK(after.size() > before.size());
+}
+
+TEST_CASE("Sensitivity command: tests may be chosen that the soil's tables do not hold",
+          "[cli][sensitivity]") {
+  const TempFolder folder("sensitivity_tests");
+  const std::string soil = one_test_soil(folder);
+  const std::string out = folder / "run";
+  const ProgramRun r = run(tiny_study(folder, soil, {"--tests", "direct_tension", "--method", "morris",
+                                                     "--samples", "4", "--threads", "1", "--out", out}));
+  INFO(r.errors);
+  CHECK(r.exit_code == exit_done);
+  const Json card = read(folder.path() / "run");
+  CHECK(card["study"]["tests"] == Json{"direct_tension"});
+  REQUIRE(card["features"].size() == 2);
+  CHECK(card["features"][0]["name"] == "direct_tension/tensile_strength_Pa/tension");
+  CHECK(card["provenance"].get<std::string>().find("nothing measured is compared") == 0);
+  const ProgramRun other = run(tiny_study(folder, soil, {"--extend", "--tests", "bed", "--out", out}));
+  CHECK(other.exit_code == exit_bad_input);
+  CHECK(other.says({"--tests: the study in --out is of other tests"}));
+  const ProgramRun more = run(tiny_study(folder, soil, {"--extend", "--samples", "5", "--out", out}));
+  CHECK(more.exit_code == exit_done);
+  CHECK(read(folder.path() / "run")["study"]["tests"] == Json{"direct_tension"});
 }
 
 TEST_CASE("Sensitivity command: Sobol from an emulator says that it is one", "[cli][sensitivity]") {
