@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "calibrate/parallel.hpp"
 #include "dem_core/packing.hpp"
 #include "dem_core/step.hpp"
 
@@ -169,6 +170,24 @@ void flowing_bed(benchmark::State& bench) {
             600);
 }
 
+/// One run on several threads; items_per_second over wall time shows the gain.
+void flowing_bed_on_threads(benchmark::State& bench) {
+  const int num_threads = static_cast<int>(bench.range(0));
+  const Case start = bed("bench/reference/flow_32k.csv.gz", 62.413753, 124.827505, {1.5, 0, -1}, 1);
+  constexpr int num_steps = 300;
+  for (auto _ : bench) {
+    bench.PauseTiming();
+    Case c = start;
+    Workspace workspace;
+    workspace.num_threads = num_threads;
+    if (num_threads > 1) workspace.side_by_side = thread_team(num_threads);
+    advance(c, workspace, 50);
+    bench.ResumeTiming();
+    advance(c, workspace, num_steps);
+  }
+  bench.SetItemsProcessed(bench.iterations() * num_steps * start.model.num_particles());
+}
+
 /// As many independent batches as threads; items_per_second over wall time shows the gain.
 void batches_side_by_side(benchmark::State& bench) {
   const auto num_threads = static_cast<std::size_t>(bench.range(0));
@@ -191,6 +210,7 @@ void batches_side_by_side(benchmark::State& bench) {
 BENCHMARK(unconfined_compression)->ArgName("W")->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kSecond);
 BENCHMARK(settled_bed)->ArgName("W")->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kSecond);
 BENCHMARK(flowing_bed)->ArgName("W")->Arg(1)->Arg(4)->Arg(8)->Unit(benchmark::kSecond);
+BENCHMARK(flowing_bed_on_threads)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kSecond);
 BENCHMARK(batches_side_by_side)
     ->ArgName("threads")
     ->Arg(1)

@@ -32,7 +32,9 @@ std::string reason_without_error_bar(const FitContext& context, std::size_t j) {
   if (!context.uncertainty) return "the runs around the optimum could not be had";
   if (is_frozen(context, j)) return "the runs on both sides of it failed";
   if (!context.uncertainty->is_fixed(static_cast<Eigen::Index>(j))) {
-    return "the data do not fix it, see the null directions";
+    return context.uncertainty->num_drowned > 0
+               ? "its derivatives drown in the scatter of neighbouring runs; the profile says what is known"
+               : "the data do not fix it, see the null directions";
   }
   return "";
 }
@@ -175,7 +177,10 @@ void report_covariance(FitContext& context) {
     // A frozen parameter is not flat, only unknown.
     for (const std::size_t j : context.secants->frozen) direction[static_cast<Eigen::Index>(j)] = 0;
     if (direction.norm() < 0.5) continue;
-    summary.null_directions.push_back(describe_null_direction(context.parameters, direction));
+    summary.null_directions.push_back(
+        context.uncertainty->num_drowned > 0
+            ? "the derivatives do not resolve " + describe_direction(context.parameters, direction)
+            : describe_null_direction(context.parameters, direction));
   }
 }
 

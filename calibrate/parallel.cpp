@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 
 namespace tilth {
@@ -19,6 +20,13 @@ void parallel_for_each_index(std::size_t n, int num_threads,
   // One index per task: a body is a whole simulation, so balance matters and overhead does not.
   tbb::task_arena arena(num_threads);
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
+}
+
+std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)> thread_team(int num_threads) {
+  const auto arena = std::make_shared<tbb::task_arena>(std::max(1, num_threads));
+  return [arena](std::size_t n, const std::function<void(std::size_t)>& body) {
+    arena->execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
+  };
 }
 
 int threads_or_all(int num_threads) {

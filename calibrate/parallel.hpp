@@ -17,6 +17,10 @@ namespace tilth {
 void parallel_for_each_index(std::size_t n, int num_threads,
                              const std::function<void(std::size_t)>& body);
 
+/// The same loop for bodies of a millisecond or less that are called over and over: its threads are kept.
+/// @thread_safety the function may be copied; calls of one team may not overlap
+std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)> thread_team(int num_threads);
+
 /// The number itself, or for 0 what the machine has, at least 1.
 int threads_or_all(int num_threads);
 

@@ -55,14 +55,20 @@ TILTH_INLINE BondExtras bond_extras(const StepView& view, std::int64_t bond) {
           view.bond_worst + bond * W};
 }
 
-/// Force on j and the moments of one listed pair (i, j), added to both bodies. HasBonds = false leaves
+/// What one listed pair (i, j) adds: on_b to the force of j and its negative to that of i, the turns to their torques.
+template <int W>
+struct PairForce {
+  bool acts;  ///< in some lane; else nothing is to be added
+  Pack3<W> on_b, turn_a, turn_b;
+};
+
+/// Force and moments of one listed pair. HasBonds = false leaves
 /// the bond, HasRolling = false the rolling spring and HasEffects = false the laws of effect_law.hpp out
 /// of the code; the bits are those of a model without bonds, and of lanes without rolling friction or
 /// effects, either way.
 template <int W, bool HasBonds, bool HasRolling, bool HasEffects>
-TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
-                             Pack3<W>& force_a, Pack3<W>& torque_a, std::int64_t i,
-                             std::int64_t p) {
+TILTH_INLINE PairForce<W> pair_force(const StepView& view, const Law<W>& law, const Body<W>& a,
+                                     std::int64_t i, std::int64_t p) {
   using P = Pack<W>;
   const PairRecord& pair = view.pairs[p];
   const std::int64_t j = pair.j;
@@ -91,7 +97,7 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   }
   if (!any_bond && !any(touching) && !(HasEffects && any(near))) {
     clear_memory<W, HasRolling, HasEffects>(view, p, spring_m);
-    return;
+    return {false, Pack3<W>::zero(), Pack3<W>::zero(), Pack3<W>::zero()};
   }
   const Pack3<W> velocity_b = Pack3<W>::load(view.motion + j * 9 * W + 3 * W);
   const Pack3<W> spin_b = Pack3<W>::load(view.motion + j * 9 * W + 6 * W);
@@ -163,25 +169,71 @@ TILTH_INLINE void pair_force(const StepView& view, const Law<W>& law, const Body
   }
   const Pack3<W> on_b = push * e.normal - tangential;
   const Pack3<W> turning = cross(e.normal, tangential);
-  force_a = force_a - on_b;
-  torque_a = torque_a + (arm_a * turning + moment);
-  double* force_b = view.force + j * 6 * W;
-  (Pack3<W>::load(force_b) + on_b).store(force_b);
-  (Pack3<W>::load(force_b + 3 * W) + (arm_b * turning - moment)).store(force_b + 3 * W);
+  return {true, on_b, arm_a * turning + moment, arm_b * turning - moment};
+}
+
+template <int W>
+TILTH_INLINE void add_to(double* store, const Pack3<W>& force, const Pack3<W>& torque) {
+  (Pack3<W>::load(store) + force).store(store);
+  (Pack3<W>::load(store + 3 * W) + torque).store(store + 3 * W);
+}
+
+/// Cross pairs [from, to) into their buffer; nothing else of a body is written.
+template <int W, bool HasRolling, bool HasEffects>
+TILTH_INLINE void fill_cross_forces(const StepView& view, const Law<W>& law, std::int64_t from, std::int64_t to) {
+  for (std::int64_t k = from; k < to; ++k) {
+    const std::int64_t i = view.cross_row[k];
+    const Body<W> a = Body<W>::load(view.motion + i * 9 * W);
+    const PairForce<W> f = pair_force<W, true, HasRolling, HasEffects>(view, law, a, i, view.cross_pair[k]);
+    view.cross_acts[k] = f.acts;
+    double* store = view.cross_force + k * 9 * W;
+    f.on_b.store(store);
+    f.turn_a.store(store + 3 * W);
+    f.turn_b.store(store + 6 * W);
+  }
+}
+
+/// What earlier blocks do to this one: of every body's terms these come first.
+template <int W>
+TILTH_INLINE void add_cross_forces_on_j(const StepView& view, const BlockView& block) {
+  for (std::int64_t m = 0; m < block.num_cross_in; ++m) {
+    const std::int64_t k = block.cross_in[m];
+    if (!view.cross_acts[k]) continue;
+    const double* f = view.cross_force + k * 9 * W;
+    add_to<W>(view.force + static_cast<std::int64_t>(view.pairs[view.cross_pair[k]].j) * 6 * W,
+              Pack3<W>::load(f), Pack3<W>::load(f + 6 * W));
+  }
+}
+
+/// What later blocks do to this one: these come last.
+template <int W>
+TILTH_INLINE void add_cross_forces_on_i(const StepView& view, const BlockView& block) {
+  for (std::int64_t k = block.cross_from; k < block.cross_to; ++k) {
+    if (!view.cross_acts[k]) continue;
+    const double* f = view.cross_force + k * 9 * W;
+    double* store = view.force + static_cast<std::int64_t>(view.cross_row[k]) * 6 * W;
+    (Pack3<W>::load(store) - Pack3<W>::load(f)).store(store);
+    (Pack3<W>::load(store + 3 * W) + Pack3<W>::load(f + 3 * W)).store(store + 3 * W);
+  }
 }
 
 template <int W, bool HasBonds, bool HasRolling, bool HasEffects = false>
-TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law) {
-  for (std::int64_t i = 0; i < view.num_particles; ++i) {
+TILTH_INLINE void accumulate_pair_forces(const StepView& view, const Law<W>& law, const BlockView& block) {
+  for (std::int64_t i = block.row_from; i < block.row_to; ++i) {
     const std::int64_t begin = view.row_begin[i];
-    const std::int64_t end = view.row_begin[i + 1];
+    const std::int64_t end = view.row_end[i];
     if (begin == end) continue;
     const Body<W> a = Body<W>::load(view.motion + i * 9 * W);
     double* store = view.force + i * 6 * W;
     Pack3<W> force = Pack3<W>::load(store);
     Pack3<W> torque = Pack3<W>::load(store + 3 * W);
-    for (std::int64_t p = begin; p < end; ++p)
-      pair_force<W, HasBonds, HasRolling, HasEffects>(view, law, a, force, torque, i, p);
+    for (std::int64_t p = begin; p < end; ++p) {
+      const PairForce<W> f = pair_force<W, HasBonds, HasRolling, HasEffects>(view, law, a, i, p);
+      if (!f.acts) continue;
+      force = force - f.on_b;
+      torque = torque + f.turn_a;
+      add_to<W>(view.force + static_cast<std::int64_t>(view.pairs[p].j) * 6 * W, f.on_b, f.turn_b);
+    }
     force.store(store);
     torque.store(store + 3 * W);
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "dem_core/step_blocks.hpp"
 #include "dem_core/tool_geometry.hpp"
 #include "dem_core/wall_geometry.hpp"
 
@@ -329,6 +330,7 @@ void rebuild_neighbours(const Model& model, State& state, Workspace& workspace) 
   rebuild_pairs(model, state, workspace);
   rebuild_walls(model, state, workspace);
   rebuild_tools(model, state, workspace);
+  cut_into_blocks(state, workspace);
   workspace.moved_m.assign(as_size(state.num_lanes), 0.0);
   ++workspace.num_rebuilds;
 }

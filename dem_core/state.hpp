@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "dem_core/aligned.hpp"
@@ -131,12 +132,32 @@ struct State {
   void set_motion_part(int particle, int first, const Vec3& value);  ///< all lanes alike
 };
 
+/// Calls body(0) ... body(n - 1), perhaps side by side, and returns when all are done.
+using SideBySide = std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)>;
+
+/// Rows that one thread of a step works on; see step_blocks.hpp.
+struct StepBlock {
+  std::int32_t row_from = 0, row_to = 0;
+  std::int32_t cross_from = 0, cross_to = 0;  ///< cross pairs whose i lies in the block
+  std::vector<std::int32_t> cross_in;         ///< those whose j does, ascending
+};
+
 /// Buffers rebuilt from Model and State whenever needed; see step().
 struct Workspace {
+  int num_threads = 1;      ///< of one step; any number gives the same bits
+  SideBySide side_by_side;  ///< what runs them; empty: one thread
   bool prepared = false;
   bool has_rolling = false;  ///< rolling springs are kept: some lane has rolling friction, or effects
   bool has_effects = false;  ///< some lane has effects, or bonds have strengths of their own
   std::vector<PairRecord> pairs;
+  std::vector<StepBlock> blocks;          ///< empty with one thread
+  std::vector<std::int32_t> row_end;      ///< [particle]: end of the pairs inside its block
+  std::vector<std::int32_t> cross_pair;   ///< pairs between blocks, ascending
+  std::vector<std::int32_t> cross_row;    ///< their i
+  AlignedDoubles cross_force;             ///< [cross pair][9][W]
+  std::vector<std::uint8_t> cross_acts;
+  AlignedDoubles block_max_speed2;        ///< [block][W], blocks a cache line apart
+  AlignedDoubles block_num_broken;        ///< likewise
   std::vector<WallRecord> wall_pairs;
   std::vector<MeshFeatures> tool_features;
   std::vector<double> tool_reach_m;    ///< per tool: farthest a grain it may touch is from its origin

@@ -219,6 +219,11 @@ lanes::StepView view_of(const Model& model, State& state, Workspace& workspace,
   v.radius_m = model.radius_m.data();
   for (int k = 0; k < 3; ++k) v.gravity_m_per_s2[k] = model.gravity_m_per_s2[k];
   v.row_begin = state.contacts.row_begin.data();
+  v.row_end = workspace.blocks.empty() ? state.contacts.row_begin.data() + 1 : workspace.row_end.data();
+  v.cross_pair = workspace.cross_pair.data();
+  v.cross_row = workspace.cross_row.data();
+  v.cross_force = workspace.cross_force.data();
+  v.cross_acts = workspace.cross_acts.data();
   v.pairs = workspace.pairs.data();
   v.touching = state.contacts.touching.data();
   v.pair_spring_m = state.contacts.spring_m.data();
@@ -281,15 +286,75 @@ std::vector<lanes::ToolView> tool_views(const Model& model, const Workspace& wor
   return views;
 }
 
-void dispatch(const lanes::StepView& view, int num_lanes) {
+/// The kernels of one lane count, with or without the laws of effect_law.hpp.
+struct Kernels {
+  void (*step)(const lanes::StepView&);
+  void (*cross_forces)(const lanes::StepView&, const lanes::BlockView&, std::int64_t, std::int64_t);
+  void (*block_forces)(const lanes::StepView&, const lanes::BlockView&);
+  void (*rigid_forces)(const lanes::StepView&);
+  void (*move_block)(const lanes::StepView&, const lanes::BlockView&);
+};
+
+template <int W>
+Kernels kernels_of(bool has_effects) {
+  using namespace lanes;
+  if (has_effects)
+    return {step_lanes_with_effects<W>, BlockStepWithEffects<W>::cross_forces, BlockStepWithEffects<W>::block_forces,
+            BlockStepWithEffects<W>::rigid_forces, BlockStep<W>::move_block};
+  return {step_lanes<W>, BlockStep<W>::cross_forces, BlockStep<W>::block_forces, BlockStep<W>::rigid_forces,
+          BlockStep<W>::move_block};
+}
+
+Kernels kernels(int num_lanes, bool has_effects) {
   if (!lanes_supported(num_lanes))
     throw std::invalid_argument("this processor cannot run that many lanes; see widest_lanes()");
-  const auto run = [&view](auto plain, auto with_effects) {
-    view.has_effects ? with_effects(view) : plain(view);
-  };
-  if (num_lanes == 1) run(lanes::step_lanes<1>, lanes::step_lanes_with_effects<1>);
-  if (num_lanes == 4) run(lanes::step_lanes<4>, lanes::step_lanes_with_effects<4>);
-  if (num_lanes == 8) run(lanes::step_lanes<8>, lanes::step_lanes_with_effects<8>);
+  if (num_lanes == 1) return kernels_of<1>(has_effects);
+  return num_lanes == 4 ? kernels_of<4>(has_effects) : kernels_of<8>(has_effects);
+}
+
+/// Blocks write their counts this far apart: no two share a cache line.
+constexpr std::size_t counts_apart = 16;
+
+std::vector<lanes::BlockView> block_views(Workspace& workspace) {
+  const std::size_t size = workspace.blocks.size() * counts_apart;
+  workspace.block_max_speed2.assign(size, 0.0);
+  workspace.block_num_broken.assign(size, 0.0);
+  std::vector<lanes::BlockView> views;
+  for (std::size_t b = 0; b < workspace.blocks.size(); ++b) {
+    const StepBlock& block = workspace.blocks[b];
+    views.push_back({block.row_from, block.row_to, block.cross_from, block.cross_to, block.cross_in.data(),
+                     static_cast<std::int64_t>(block.cross_in.size()),
+                     workspace.block_max_speed2.data() + b * counts_apart,
+                     workspace.block_num_broken.data() + b * counts_apart});
+  }
+  return views;
+}
+
+/// See step_blocks.hpp.
+void step_side_by_side(const Kernels& kernels, const lanes::StepView& view, Workspace& workspace) {
+  const std::vector<lanes::BlockView> blocks = block_views(workspace);
+  const auto num_cross = static_cast<std::int64_t>(workspace.cross_pair.size());
+  const auto num_blocks = static_cast<std::int64_t>(blocks.size());
+  workspace.side_by_side(blocks.size(), [&](std::size_t b) {
+    const auto share = static_cast<std::int64_t>(b);
+    kernels.cross_forces(view, blocks[b], num_cross * share / num_blocks, num_cross * (share + 1) / num_blocks);
+  });
+  workspace.side_by_side(blocks.size(), [&](std::size_t b) { kernels.block_forces(view, blocks[b]); });
+  kernels.rigid_forces(view);
+  workspace.side_by_side(blocks.size(), [&](std::size_t b) { kernels.move_block(view, blocks[b]); });
+  for (std::size_t lane = 0; lane < workspace.num_broken.size(); ++lane) {
+    double& fastest = workspace.max_speed2_m2_per_s2[lane] = 0.0;
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      fastest = std::max(fastest, workspace.block_max_speed2[b * counts_apart + lane]);
+      workspace.num_broken[lane] += workspace.block_num_broken[b * counts_apart + lane];
+    }
+  }
+}
+
+void run_kernels(const lanes::StepView& view, int num_lanes, Workspace& workspace) {
+  const Kernels kernels_of_pack = kernels(num_lanes, view.has_effects);
+  if (workspace.blocks.empty()) kernels_of_pack.step(view);
+  else step_side_by_side(kernels_of_pack, view, workspace);
 }
 
 /// Books time and motion of every active lane; freezes those that ran away.
@@ -352,8 +417,7 @@ StepInfo step(const Model& model, State& state, Workspace& workspace) {
   const AlignedDoubles wall_force = any_frozen ? state.wall_force : AlignedDoubles{};
   const AlignedDoubles tool_load = any_frozen ? state.tool_load : AlignedDoubles{};
   const std::vector<lanes::ToolView> tools = tool_views(model, workspace);
-  dispatch(view_of(model, state, workspace, walls, wall_velocity.data(), tools),
-           model.num_lanes());
+  run_kernels(view_of(model, state, workspace, walls, wall_velocity.data(), tools), model.num_lanes(), workspace);
   restore_frozen(state, wall_force, state.wall_force);
   restore_frozen(state, tool_load, state.tool_load);
   close_step(model, state, workspace, info);

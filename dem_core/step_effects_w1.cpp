@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes_with_effects<1>(const StepView&);
+template struct BlockStepWithEffects<1>;
 }  // namespace tilth::lanes

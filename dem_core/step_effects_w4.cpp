@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes_with_effects<4>(const StepView&);
+template struct BlockStepWithEffects<4>;
 }  // namespace tilth::lanes

@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes_with_effects<8>(const StepView&);
+template struct BlockStepWithEffects<8>;
 }  // namespace tilth::lanes

@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes<1>(const StepView&);
+template struct BlockStep<1>;
 }  // namespace tilth::lanes

@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes<4>(const StepView&);
+template struct BlockStep<4>;
 }  // namespace tilth::lanes

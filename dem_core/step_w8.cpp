@@ -5,4 +5,5 @@
 
 namespace tilth::lanes {
 template void step_lanes<8>(const StepView&);
+template struct BlockStep<8>;
 }  // namespace tilth::lanes

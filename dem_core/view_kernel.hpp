@@ -76,6 +76,16 @@ struct ToolView {
   double max_depth_m;
 };
 
+/// A run of consecutive rows that one thread works on; see step_blocks.hpp.
+struct BlockView {
+  std::int64_t row_from, row_to;
+  std::int64_t cross_from, cross_to;  ///< cross pairs whose i lies in the block
+  const std::int32_t* cross_in;       ///< those whose j does, ascending
+  std::int64_t num_cross_in;
+  double* max_speed2;  ///< [W]
+  double* num_broken;  ///< [W]
+};
+
 struct StepView {
   int num_particles;
   int num_walls;
@@ -92,6 +102,11 @@ struct StepView {
   const double* radius_m;
   double gravity_m_per_s2[3];
   const std::int32_t* row_begin;
+  const std::int32_t* row_end;   ///< of the pairs whose j lies in the block of i
+  const std::int32_t* cross_pair;  ///< pairs whose j lies in a later block, ascending
+  const std::int32_t* cross_row;   ///< their i
+  double* cross_force;             ///< [cross pair][9][W]: force on j, turn of i, turn of j
+  std::uint8_t* cross_acts;
   const PairRecord* pairs;
   std::uint8_t* touching;
   double* pair_spring_m;
@@ -131,11 +146,35 @@ void step_lanes(const StepView& view);
 template <int W>
 void step_lanes_with_effects(const StepView& view);
 
-extern template void step_lanes_with_effects<1>(const StepView&);
-extern template void step_lanes_with_effects<4>(const StepView&);
-extern template void step_lanes_with_effects<8>(const StepView&);
+/// The same step of several blocks, to the bit: cross_forces() for shares of the cross pairs, block_forces()
+/// of every block, rigid_forces(), move_block() of every block. Calls of one kind may run side by side.
+template <int W>
+struct BlockStep {
+  static void cross_forces(const StepView& view, const BlockView& block, std::int64_t from, std::int64_t to);
+  static void block_forces(const StepView& view, const BlockView& block);
+  static void rigid_forces(const StepView& view);
+  static void move_block(const StepView& view, const BlockView& block);
+};
+
+/// BlockStep of step_lanes_with_effects().
+template <int W>
+struct BlockStepWithEffects {
+  static void cross_forces(const StepView& view, const BlockView& block, std::int64_t from, std::int64_t to);
+  static void block_forces(const StepView& view, const BlockView& block);
+  static void rigid_forces(const StepView& view);
+};
+
 extern template void step_lanes<1>(const StepView&);
+extern template void step_lanes_with_effects<1>(const StepView&);
+extern template struct BlockStep<1>;
+extern template struct BlockStepWithEffects<1>;
 extern template void step_lanes<4>(const StepView&);
+extern template void step_lanes_with_effects<4>(const StepView&);
+extern template struct BlockStep<4>;
+extern template struct BlockStepWithEffects<4>;
 extern template void step_lanes<8>(const StepView&);
+extern template void step_lanes_with_effects<8>(const StepView&);
+extern template struct BlockStep<8>;
+extern template struct BlockStepWithEffects<8>;
 
 }  // namespace tilth::lanes

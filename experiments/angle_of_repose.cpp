@@ -185,7 +185,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
   for (ExperimentResult& r : run.results)
     r.curves = {{"retreat", {"time_s", "wall_position_m", "repose_angle_rad", "agitation"}, {}}};
   HeapProtocol protocol(config, all.mean_radius_m, lanes.size());
-  run_protocol(run, HeapProtocol::interval_steps, 10'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, HeapProtocol::interval_steps, 10'000'000, options, std::ref(protocol));
   for (ExperimentResult& r : run.results)
     r.inertial_number = protocol.wall_speed_m_per_s() / config.column_height_m * 2 *
                         all.mean_radius_m /

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dem_core/packing_store.hpp"
+#include "dem_core/state.hpp"
 #include "experiments/material.hpp"
 #include "experiments/result.hpp"
 
@@ -22,6 +23,8 @@ struct RunOptions {
   int max_lanes = 0;                          ///< 1, 4 or 8; 0 takes what the processor offers
   const std::atomic<bool>* stop = nullptr;    ///< set to end early: results become `stopped`
   ForEach for_each;                           ///< runs packs side by side; empty: one by one
+  int threads_per_pack = 1;                   ///< of every time step, for single large runs; needs side_by_side
+  SideBySide side_by_side;                    ///< runs the threads of a step
 };
 
 /// Lane counts that cover n members on a machine of `widest` lanes: full packs of the widest, then

@@ -161,7 +161,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
 
   // 2. settle, push the cone in, draw it back
   ConeProtocol protocol(config, run);
-  run_protocol(run, ConeProtocol::interval_steps, 8'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, ConeProtocol::interval_steps, 8'000'000, options, std::ref(protocol));
 
   // 3. read the curves
   for (std::size_t k = 0; k < run.results.size(); ++k) {

@@ -164,7 +164,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                      speed_m_per_s[static_cast<std::size_t>(lane)] / config.ring_height_m);
     protocol.drive(run, lane, 1);
   }
-  run_protocol(run, OedometerProtocol::interval_steps, 4'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, OedometerProtocol::interval_steps, 4'000'000, options, std::ref(protocol));
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];
     if (r.status == RunStatus::completed) protocol.read_features(r, k);

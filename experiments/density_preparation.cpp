@@ -119,7 +119,7 @@ std::vector<ExperimentResult> run_densest(std::span<const std::size_t> state_of_
     preparation.emplace_back(1.0, 0.0, ratio * material.contact_modulus_Pa, material);
     preparation.back().start(run, lane);
   }
-  run_protocol(run, IsotropicCompression::interval_steps, 2'000'000, options.stop,
+  run_protocol(run, IsotropicCompression::interval_steps, 2'000'000, options,
                [&preparation](LaneRun& r, int lane) {
                  const std::size_t k = static_cast<std::size_t>(lane);
                  if (!preparation[k].advance(r, lane)) return;

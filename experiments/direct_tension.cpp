@@ -39,7 +39,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                      loading.speed_m_per_s[static_cast<std::size_t>(lane)] / config.specimen_height_m);
   for (ExperimentResult& r : run.results)
     r.curves = {{"stress_strain", {"axial_strain", "tensile_stress_Pa", "bonds_broken"}, {}}};
-  run_past_peak(run, loading, options.stop);
+  run_past_peak(run, loading, options);
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];
     if (r.status == RunStatus::completed)

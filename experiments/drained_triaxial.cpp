@@ -153,7 +153,7 @@ std::vector<ExperimentResult> run_pack(const std::vector<TriaxialTask>& tasks,
          {}}};
   TriaxialProtocol protocol(config, tasks, densest);
   protocol.start(run);
-  run_protocol(run, IsotropicCompression::interval_steps, 8'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, IsotropicCompression::interval_steps, 8'000'000, options, std::ref(protocol));
   return run.results;
 }
 

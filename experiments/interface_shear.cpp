@@ -122,7 +122,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                               {}}};
   SlideProtocol protocol(config, lanes, normal_stress_Pa);
   protocol.start(run);
-  run_protocol(run, SlideProtocol::interval_steps, 4'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, SlideProtocol::interval_steps, 4'000'000, options, std::ref(protocol));
   for (std::size_t k = 0; k < lanes.size(); ++k)
     run.results[k].inertial_number =
         protocol.speed_m_per_s(k) / config.box_height_m * 2 * packing.mean_radius_m *

@@ -90,13 +90,16 @@ void set_local_damping(LaneRun& run, int lane, double local_damping) {
 }
 
 void run_protocol(LaneRun& run, int interval_steps, std::int64_t max_steps,
-                  const std::atomic<bool>* stop, const LaneProtocol& protocol) {
+                  const RunOptions& options, const LaneProtocol& protocol) {
+  run.workspace.num_threads = options.threads_per_pack;
+  run.workspace.side_by_side = options.side_by_side;
+  if (options.threads_per_pack > 1) model_changed(run.workspace);  // the list is cut for them
   const auto any_active = [&run] {
     return std::ranges::any_of(run.specimen.state.active, [](auto a) { return a != 0; });
   };
   while (any_active()) {
     step_interval(run, interval_steps);
-    const bool asked_to_stop = stop && stop->load(std::memory_order_relaxed);
+    const bool asked_to_stop = options.stop && options.stop->load(std::memory_order_relaxed);
     const bool too_long = run.specimen.state.num_steps >= max_steps;
     for (int lane = 0; lane < run.num_lanes(); ++lane) {
       if (!run.active(lane)) continue;

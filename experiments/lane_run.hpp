@@ -61,6 +61,6 @@ using LaneProtocol = std::function<void(LaneRun& run, int lane)>;
 /// Steps in intervals and calls the protocol until every lane has ended. Lanes that diverge, and
 /// lanes still active after max_steps, end as failures that say where they stood.
 void run_protocol(LaneRun& run, int interval_steps, std::int64_t max_steps,
-                  const std::atomic<bool>* stop, const LaneProtocol& protocol);
+                  const RunOptions& options, const LaneProtocol& protocol);
 
 }  // namespace tilth

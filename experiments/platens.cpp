@@ -34,7 +34,7 @@ double axial_force_N(const LaneRun& run, int lane) {
          (run.wall_force_N(top_platen, lane).z() - run.wall_force_N(bottom_platen, lane).z());
 }
 
-void run_past_peak(LaneRun& run, const AxialLoading& loading, const std::atomic<bool>* stop) {
+void run_past_peak(LaneRun& run, const AxialLoading& loading, const RunOptions& options) {
   std::vector<double> closing_speed_m_per_s;
   for (const double v : loading.speed_m_per_s) closing_speed_m_per_s.push_back(loading.sense * v);
   start_straining(run, loading.height_m, closing_speed_m_per_s);
@@ -53,7 +53,7 @@ void run_past_peak(LaneRun& run, const AxialLoading& loading, const std::atomic<
     if (fallen || strain >= loading.max_axial_strain)
       r.finish(lane, RunStatus::completed, fallen ? "past the peak" : "at the strain limit");
   };
-  run_protocol(run, interval_steps, 2'000'000, stop, protocol);
+  run_protocol(run, interval_steps, 2'000'000, options, protocol);
 }
 
 PackingSpec cylinder_packing(double radius_m, double height_m, int num_particles, double porosity,

@@ -34,7 +34,7 @@ struct AxialLoading {
 /// strain ("past the peak"), or max_axial_strain ("at the strain limit"). Every 20 steps a row for
 /// the first curve of each result: axial strain v t / H at the interval's middle, stress
 /// = mean platen force of the interval / (pi R^2), bonds broken.
-void run_past_peak(LaneRun& run, const AxialLoading& loading, const std::atomic<bool>* stop);
+void run_past_peak(LaneRun& run, const AxialLoading& loading, const RunOptions& options);
 
 /// A cylinder's packing; every test's packing_spec() names its own fields.
 PackingSpec cylinder_packing(double radius_m, double height_m, int num_particles, double porosity,

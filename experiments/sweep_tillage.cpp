@@ -214,7 +214,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
 
   // 2. settle, draw the tool through, let the soil come to rest
   SweepProtocol protocol(config, run, observer);
-  run_protocol(run, SweepProtocol::interval_steps, 50'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, SweepProtocol::interval_steps, 50'000'000, options, std::ref(protocol));
 
   // 3. read forces, surface and tracers
   for (std::size_t k = 0; k < run.results.size(); ++k) {

@@ -44,7 +44,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
   }
 
   // 2. close the platens until the stress has fallen or the strain is reached
-  run_past_peak(run, loading, options.stop);
+  run_past_peak(run, loading, options);
 
   // 3. read the curve
   for (std::size_t k = 0; k < run.results.size(); ++k) {

@@ -128,7 +128,7 @@ std::vector<ExperimentResult> run_pack(std::span<const SoilMaterial> lanes,
                  {}}};
   VaneProtocol protocol(config, lanes);
   protocol.start(run);
-  run_protocol(run, VaneProtocol::interval_steps, 4'000'000, options.stop, std::ref(protocol));
+  run_protocol(run, VaneProtocol::interval_steps, 4'000'000, options, std::ref(protocol));
   for (std::size_t k = 0; k < run.results.size(); ++k) {
     ExperimentResult& r = run.results[k];
     if (r.status != RunStatus::completed) continue;

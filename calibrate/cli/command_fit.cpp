@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "calibrate/cli/command_report.hpp"
@@ -95,6 +96,13 @@ void say_end(const RunSession& session, spdlog::logger& log) {
     log.warn("{}: the report says what is known so far; go on with --resume", session.stop_reason());
 }
 
+/// The linear interval; without one that of the profile, "-" where it does not end inside the bounds.
+std::string interval_words(const FittedParameter& p) {
+  if (!std::isnan(p.lo95)) return fmt::format("[{:.4g}, {:.4g}]", p.lo95, p.hi95);
+  const auto end = [](double x) { return std::isnan(x) ? std::string("-") : fmt::format("{:.4g}", x); };
+  return fmt::format("[{}, {}] (profile)", end(p.profile_lo95), end(p.profile_hi95));
+}
+
 }  // namespace
 
 void add_fit_options(CLI::App& app, FitCommandOptions& o) {
@@ -159,8 +167,8 @@ int run_fit(const FitCommandOptions& o, const std::string& command_line) {
   std::cout << card.provenance_sentence << '\n';
   for (const FittedParameter& p : summary.parameters)
     if (p.estimate)
-      std::cout << fmt::format("{:<28} {:>12.5g}   95 % [{:.4g}, {:.4g}]   {}\n", p.name, p.value,
-                               p.lo95, p.hi95, verdict_words(p));
+      std::cout << fmt::format("{:<28} {:>12.5g}   95 % {}   {}\n", p.name, p.value, interval_words(p),
+                               verdict_words(p));
   std::cout << fmt::format("results: {} ({} s)\n", folder.string(),
                            static_cast<int>(session.seconds() + 0.5));
   return exit_code_of(summary);

@@ -21,7 +21,7 @@ void add_job_options(CLI::App& app, JobOptions& o) {
   app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
       ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");
-  app.add_option("--tests", o.tests, "whose targets: mechanical, sweep (draught, tracers) or all")
+  app.add_option("--tests", o.tests, "whose targets: mechanical, sweep (draught, tracers) or all (default; with --quick mechanical)")
       ->check(CLI::IsMember({"mechanical", "sweep", "all"}));
   app.add_option("--seed", o.seed, "first packing seed (default 1)")->check(CLI::NonNegativeNumber);
   app.add_flag("--quick", o.quick, "a labelled preview: small specimens, few packings");
@@ -32,7 +32,7 @@ std::string job_command(const JobOptions& o) {
   std::string text = o.soil_folder.empty() ? "calibrate --soil " + o.soil
                                            : "calibrate --data " + o.soil_folder;
   if (!o.config.empty()) text += " --config " + o.config;
-  if (o.tests != "all") text += " --tests " + o.tests;
+  if (!o.tests.empty()) text += " --tests " + o.tests;
   text += fmt::format(" --seed {}", o.seed);
   if (o.quick) text += " --quick";
   if (o.force) text += " --force";
@@ -41,14 +41,28 @@ std::string job_command(const JobOptions& o) {
 
 namespace {
 
+bool is_of_sweep(const SoilTarget& t) { return t.test_id == "sweep_tillage"; }
+
 /// Leaves the targets of the tests asked for. @throws ConfigError if none is left to fit
 void choose_tests(const std::string& tests, SoilData& soil) {
   if (tests == "all") return;
   const bool sweep = tests == "sweep";
   std::erase_if(soil.targets,
-                [sweep](const SoilTarget& t) { return (t.test_id == "sweep_tillage") != sweep; });
+                [sweep](const SoilTarget& t) { return is_of_sweep(t) != sweep; });
   if (std::ranges::all_of(soil.targets, &SoilTarget::holdout))
     throw ConfigError({fmt::format("--tests {}: {} has no such target to fit", tests, soil.id)});
+}
+
+/// Leaves the targets of the tests asked for; a preview that was not asked for any leaves out the sweep.
+void choose_targets(const JobOptions& o, FitJob& job) {
+  const auto num_sweep = std::ranges::count_if(job.soil.targets, is_of_sweep);
+  const bool has_others = std::ranges::any_of(
+      job.soil.targets, [](const SoilTarget& t) { return !is_of_sweep(t) && !t.holdout; });
+  if (!o.tests.empty() || !o.quick || num_sweep == 0 || !has_others)
+    return choose_tests(o.tests.empty() ? "all" : o.tests, job.soil);
+  choose_tests("mechanical", job.soil);
+  job.soil.warnings.push_back(
+      fmt::format("this preview leaves out the {} targets of the sweep; --tests all takes them in", num_sweep));
 }
 
 }  // namespace
@@ -57,7 +71,7 @@ FitJob read_job(const JobOptions& o) {
   FitJob job;
   const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
   job.soil = load_soil(folder);
-  choose_tests(o.tests, job.soil);
+  choose_targets(o, job);
   job.options = o.quick ? quick_fit_options() : FitOptions{};
   job.options.seed = o.seed;
   job.options.force = o.force;

@@ -19,7 +19,9 @@ struct JobOptions {
   std::string soil;
   std::string soil_folder;  ///< --data: a folder in the soil format, instead of --soil
   std::string config;
-  std::string tests = "all";  ///< whose targets are used: "mechanical", "sweep" or "all"
+  /// Whose targets are used: "mechanical", "sweep" or "all". Empty: all, but a preview of a soil with
+  /// targets of both kinds takes the mechanical ones alone.
+  std::string tests;
   std::uint64_t seed = 1;
   bool quick = false;
   bool force = false;

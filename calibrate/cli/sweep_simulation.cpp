@@ -20,7 +20,7 @@ struct WatchedRun {
 };
 
 WatchedRun watch(const SoilMaterial& material, const SweepTillageConfig& config,
-                 const RunContext& context, const SweepOutput& output) {
+                 const RunContext& context, const SweepOutput& output, std::size_t num_runs) {
   WatchedRun run;
   std::optional<SweepVtk> vtk;
   if (output.vtk) vtk.emplace(output.folder / "vtk" / fmt::format("seed{}", config.packing_seed));
@@ -34,7 +34,7 @@ WatchedRun watch(const SoilMaterial& material, const SweepTillageConfig& config,
                                    run.at_rest = view_of(frame);
                                }};
   run.result =
-      watch_sweep_tillage(material, config, context.packings, observer, run_options(context));
+      watch_sweep_tillage(material, config, context.packings, observer, run_options(context, num_runs));
   return run;
 }
 
@@ -67,7 +67,7 @@ std::vector<ExperimentResult> simulate_sweeps(const SweepTillageConfig& config,
   parallel_for_each_index(seeds.size(), context.num_threads, [&](std::size_t k) {
     SweepTillageConfig own = std::get<SweepTillageConfig>(set_up);
     own.packing_seed = seeds[k];
-    runs[k] = watch(on_day, own, context, output);
+    runs[k] = watch(on_day, own, context, output, seeds.size());
     apply_measurement_effects("sweep_tillage", fields(own), material.effects, runs[k].result);
   });
   std::vector<ExperimentResult> results;

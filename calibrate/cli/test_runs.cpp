@@ -80,8 +80,9 @@ std::vector<ExperimentResult> run_here(std::span<const TestRun> runs, const RunC
   parallel_for_each_index(groups.size(), context.num_threads, [&](std::size_t g) {
     std::vector<SoilMaterial> members;
     for (const std::size_t k : groups[g]) members.push_back(runs[k].material);
-    std::vector<ExperimentResult> own = run_virtual_test(runs[groups[g].front()].config, members,
-                                                         context.packings, run_options(context));
+    std::vector<ExperimentResult> own =
+        run_virtual_test(runs[groups[g].front()].config, members, context.packings,
+                         run_options(context, runs.size()));
     for (std::size_t m = 0; m < own.size(); ++m) results[groups[g][m]] = std::move(own[m]);
   });
   return results;
@@ -89,13 +90,15 @@ std::vector<ExperimentResult> run_here(std::span<const TestRun> runs, const RunC
 
 }  // namespace
 
-RunOptions run_options(const RunContext& context) {
+RunOptions run_options(const RunContext& context, std::size_t num_runs) {
   RunOptions options;
   options.max_lanes = context.max_lanes;
   options.stop = context.stop;
   options.for_each = [n = context.num_threads](std::size_t count, const auto& body) {
     parallel_for_each_index(count, n, body);
   };
+  options.threads_per_pack = std::max(1, context.num_threads / static_cast<int>(std::max<std::size_t>(1, num_runs)));
+  if (options.threads_per_pack > 1) options.side_by_side = thread_team(options.threads_per_pack);
   return options;
 }
 

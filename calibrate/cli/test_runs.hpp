@@ -22,8 +22,9 @@ struct RunContext {
   RunBroker* broker = nullptr;  ///< null: everything runs in this process and nothing is kept
 };
 
-/// RunOptions whose packs run side by side on the context's threads.
-RunOptions run_options(const RunContext& context);
+/// RunOptions whose packs run side by side on the context's threads; where fewer runs than threads are to be
+/// made, every time step gets several.
+RunOptions run_options(const RunContext& context, std::size_t num_runs);
 
 /// One virtual test of one material; the packing seed is in the config.
 struct TestRun {

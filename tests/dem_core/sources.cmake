@@ -17,6 +17,7 @@ list(APPEND TILTH_TEST_SOURCES
   dem_core/incline.cpp
   dem_core/invariance.cpp
   dem_core/lanes.cpp
+  dem_core/step_blocks.cpp
   dem_core/mesh.cpp
   dem_core/model.cpp
   dem_core/neighbours.cpp

@@ -46,7 +46,7 @@ double small_strain_modulus_Pa(const SoilMaterial& soil, const DirectTensionConf
                  .sense = sense,
                  .speed_m_per_s = {c.pull_speed_over_wave_speed * wave_speed_m_per_s(soil)},
                  .max_axial_strain = 2e-4},
-                nullptr);
+                {});
   const Curve& curve = run.results[0].curves.front();
   REQUIRE(curve.rows.back()[2] == 0);
   return secant_at_share(curve, 0, 1, curve.rows.size() - 1, 0.8);
@@ -73,7 +73,7 @@ TEST_CASE("Direct tension: a straight chain parts at sigma_c A and stretches as 
                    .speed_m_per_s = {1e-6 * wave_speed_m_per_s(soil)},
                    .max_axial_strain = 0.02,
                    .stop_at_peak_share = 0.1},
-                  nullptr);
+                  {});
     const Curve& curve = run.results[0].curves.front();
     REQUIRE(run.results[0].message == "past the peak");
     REQUIRE(curve.rows.back()[2] >= 1);  // the parting may shake the equally loaded others apart

@@ -177,7 +177,7 @@ TEST_CASE("Drained triaxial: the densest states of a cloud are a course through 
     preparation.back().start(run, lane);
   }
   double mean = 0.0;
-  run_protocol(run, IsotropicCompression::interval_steps, 2'000'000, nullptr, [&](LaneRun& r, int lane) {
+  run_protocol(run, IsotropicCompression::interval_steps, 2'000'000, {}, [&](LaneRun& r, int lane) {
     if (!preparation[static_cast<std::size_t>(lane)].advance(r, lane)) return;
     mean += void_ratio(r, lane) / 8;
     r.finish(lane, RunStatus::completed, "");

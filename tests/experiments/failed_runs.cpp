@@ -72,8 +72,8 @@ TEST_CASE("Failed runs: a time step of four times the stable one diverges, besid
   const auto until_step_400 = [](LaneRun& r, int lane) {
     if (r.specimen.state.num_steps >= 400) r.finish(lane, RunStatus::completed, "done");
   };
-  run_protocol(run, 20, 1000, nullptr, until_step_400);
-  run_protocol(alone, 20, 1000, nullptr, until_step_400);
+  run_protocol(run, 20, 1000, {}, until_step_400);
+  run_protocol(alone, 20, 1000, {}, until_step_400);
   REQUIRE(run.results[2].status == RunStatus::diverged);
   for (const int lane : {0, 1, 3}) {
     REQUIRE(run.results[static_cast<std::size_t>(lane)].status == RunStatus::completed);
@@ -93,7 +93,7 @@ TEST_CASE("Failed runs: what never reaches its end is not settled", "[experiment
   REQUIRE_FALSE(r.curves.front().rows.empty());  // the curve so far helps to see why
 
   LaneRun endless = free_specimen({&soil, 1});
-  run_protocol(endless, 20, 100, nullptr, [](LaneRun&, int) {});
+  run_protocol(endless, 20, 100, {}, [](LaneRun&, int) {});
   REQUIRE(endless.results.front().status == RunStatus::not_settled);
   REQUIRE(endless.results.front().num_steps == 100);
   REQUIRE_THAT(endless.results.front().message, Contains("within 100 steps"));

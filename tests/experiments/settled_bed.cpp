@@ -34,7 +34,7 @@ LaneRun bed(double friction, int num_fixed) {
 
 void settle(LaneRun& run) {
   CalmWatch watch(1e-6, 20);
-  run_protocol(run, 100, 400'000, nullptr, [&](LaneRun& r, int lane) {
+  run_protocol(run, 100, 400'000, {}, [&](LaneRun& r, int lane) {
     if (watch.calm(agitation(r, lane))) r.finish(lane, RunStatus::completed, "calm");
   });
   INFO(run.results[0].message);
