@@ -3,10 +3,13 @@
 #include "calibrate/cli/command_diagnose.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
+#include <map>
+#include <set>
 
 #include "calibrate/cli/diagnosis_report.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -27,12 +30,36 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_contenders = 3;
 constexpr double least_inclusion = 0.02;  ///< of a contender that is not named
 
+/// Soils are pooled to find a cause they share: those that are fitted with the same parameters. Of several such
+/// groups the largest; who is left out is told.
+std::vector<fs::path> soils_of_one_kind() {
+  std::map<std::set<std::string>, std::vector<fs::path>> kinds;
+  for (const std::string& name : known_soils(data_root())) {
+    const fs::path folder = soil_folder(data_root(), name);
+    std::set<std::string> free;
+    for (const SoilParameter& p : load_soil(folder).parameters)
+      if (p.estimate) free.insert(p.id);
+    kinds[free].push_back(folder);
+  }
+  const auto largest = std::ranges::max_element(kinds, {}, [](const auto& kind) { return kind.second.size(); });
+  for (const auto& [free, folders] : kinds)
+    if (free != largest->first)
+      for (const fs::path& folder : folders)
+        std::cerr << fmt::format("{}: left out of --soil all, it is fitted with other parameters ({})\n",
+                                 folder.filename().string(), fmt::join(free, ", "));
+  return largest->second;
+}
+
 std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
   if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
-  std::vector<fs::path> all;
-  for (const std::string& name : known_soils(data_root())) all.push_back(soil_folder(data_root(), name));
-  return all;
+  return soils_of_one_kind();
+}
+
+/// The rule of fits: more than 30 % of at least eight runs.
+bool too_many_failed(const SimulationLedger& ledger) {
+  return ledger.num_done >= ledger.min_batch_for_failure_rule &&
+         static_cast<double>(ledger.failures.size()) > SimulationLedger{}.max_failed_share * static_cast<double>(ledger.num_done);
 }
 
 /// The baseline of a fit, in the order of the soil's parameters. @throws ConfigError
@@ -175,6 +202,11 @@ int run_diagnose_command(const DiagnoseOptions& o, const std::string& command_li
   if (session.should_stop()) {
     std::cerr << session.stop_reason() << ": the report says what is known so far; go on with --resume\n";
     return exit_budget;
+  }
+  if (too_many_failed(ledger)) {
+    std::cerr << fmt::format("{} of {} simulations failed, the first: {}\n", ledger.failures.size(), ledger.num_done,
+                             ledger.failures.front().message);
+    return exit_failed_runs;
   }
   return exit_done;
 }

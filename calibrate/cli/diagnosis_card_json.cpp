@@ -80,6 +80,19 @@ Json scores_json(const DiagnosisResult& r, std::size_t s) {
   return list;
 }
 
+/// Correlation of the fingerprints of two candidates, what the fit can take up removed; pairs of 0.5 and more in size.
+Json look_alikes_json(const SoilCase& soil, const SoilDiagnosis& d) {
+  constexpr double least = 0.5;
+  Json list = Json::array();
+  for (Eigen::Index a = 0; a < d.look_alikes.rows(); ++a)
+    for (Eigen::Index b = a + 1; b < d.look_alikes.cols(); ++b)
+      if (std::abs(d.look_alikes(a, b)) >= least)
+        list.push_back({{"first", soil.choices[static_cast<std::size_t>(a)].candidate.id},
+                        {"second", soil.choices[static_cast<std::size_t>(b)].candidate.id},
+                        {"correlation", json_number(d.look_alikes(a, b))}});
+  return list;
+}
+
 Json soil_json(const DiagnosisResult& r, std::size_t s) {
   const SoilCase& soil = r.soils[s];
   Json j = {{"soil", soil.campaign.means.id}, {"remarks", soil.remarks}, {"no_evidence_because", soil.failure}};
@@ -100,6 +113,7 @@ Json soil_json(const DiagnosisResult& r, std::size_t s) {
                       {"tail_probability", json_number(d.gap.tail_probability)},
                       {"bootstrap_tail", json_number(d.bootstrap_tail)}};
     j["candidates"] = scores_json(r, s);
+    j["look_alikes"] = look_alikes_json(soil, d);
   }
   return j;
 }

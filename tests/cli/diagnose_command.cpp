@@ -189,6 +189,11 @@ TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures; r
   CHECK(card["soils"][0]["numerical_gates"].size() == 4);
   CHECK(card["soils"][0]["candidates"].size() == 28);
   CHECK_FALSE(card["could_not_have_been_seen"].empty());
+  for (const Json& pair : card["soils"][0]["look_alikes"]) {
+    CHECK(pair["first"] != pair["second"]);
+    CHECK(std::abs(pair["correlation"].get<double>()) >= 0.5);
+    CHECK(std::abs(pair["correlation"].get<double>()) <= 1.0);
+  }
   CHECK(fs::exists(folder / "run/figures/residuals.svg"));
   CHECK(fs::exists(folder / "run/figures/probabilities.svg"));
   const std::string text = soil_test::read_text(folder / "run/diagnosis.txt");
@@ -251,6 +256,28 @@ TEST_CASE("Diagnose: data that cannot be diagnosed are refused or answered, neve
   CHECK(run({"diagnose", "--soil", "loamysand"}).says({"did you mean loamy_sand"}));
   CHECK(run({"diagnose", "--soil", "all", "--fit", "x"}).says({"--fit is of one soil"}));
   REQUIRE(run(twin_arguments(folder, "data", {"--replicates", "2"})).exit_code == exit_done);
+  SECTION("soils that are fitted with other parameters are not pooled") {
+    const ProgramRun r = run({"diagnose", "--soil", "all", "--quick", "--max-walltime", "0:00:01", "--out", folder / "all"});
+    INFO(r.errors);
+    CHECK(r.exit_code == exit_budget);
+    CHECK(r.says({"karlsruhe_fine_sand: left out of --soil all", "contact_modulus_Pa"}));
+    CHECK_FALSE(r.says({"loamy_sand: left out"}));
+  }
+  SECTION("too many failed runs: the report is written, the exit code says so") {
+    REQUIRE(run({"twin", "--soil", "loamy_sand", "--quick", "--tests", "confined_compression", "--replicates", "3",
+                 "--out", folder / "pressed", "--truth", folder / "pressed.json"}).exit_code == exit_done);
+    // At most 50 kPa of modulus carry no 100 kPa before 40 % strain.
+    std::string table = soil_test::read_text(folder / "pressed/parameters.csv");
+    const std::string usual = "1e5,5e7,3e6";
+    REQUIRE(table.find(usual) != std::string::npos);
+    table.replace(table.find(usual), usual.size(), "1e4,5e4,2e4");
+    soil_test::write_text(folder / "pressed/parameters.csv", table);
+    const ProgramRun r = run({"diagnose", "--data", folder / "pressed", "--quick", "--out", folder / "failing"});
+    INFO(r.errors);
+    CHECK(r.exit_code == exit_failed_runs);
+    CHECK(r.says({"simulations failed, the first: confined_compression"}));
+    CHECK(fs::exists(folder / "failing/diagnosis.json"));
+  }
   SECTION("one test, two numbers: fewer numbers than parameters") {
     std::string table = soil_test::read_text(folder / "data/measurements.csv"), kept;
     std::istringstream lines(table);
