@@ -3,13 +3,10 @@
 #include "calibrate/cli/command_diagnose.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
-#include <map>
-#include <set>
 
 #include "calibrate/cli/diagnosis_report.hpp"
 #include "calibrate/cli/exit_code.hpp"
@@ -30,30 +27,14 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_contenders = 3;
 constexpr double least_inclusion = 0.02;  ///< of a contender that is not named
 
-/// Soils are pooled to find a cause they share: those that are fitted with the same parameters. Of several such
-/// groups the largest; who is left out is told.
-std::vector<fs::path> soils_of_one_kind() {
-  std::map<std::set<std::string>, std::vector<fs::path>> kinds;
-  for (const std::string& name : known_soils(data_root())) {
-    const fs::path folder = soil_folder(data_root(), name);
-    std::set<std::string> free;
-    for (const SoilParameter& p : load_soil(folder).parameters)
-      if (p.estimate) free.insert(p.id);
-    kinds[free].push_back(folder);
-  }
-  const auto largest = std::ranges::max_element(kinds, {}, [](const auto& kind) { return kind.second.size(); });
-  for (const auto& [free, folders] : kinds)
-    if (free != largest->first)
-      for (const fs::path& folder : folders)
-        std::cerr << fmt::format("{}: left out of --soil all, it is fitted with other parameters ({})\n",
-                                 folder.filename().string(), fmt::join(free, ", "));
-  return largest->second;
-}
-
 std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
   if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
-  return soils_of_one_kind();
+  const SoilsOfOneKind kind = soils_of_one_kind();
+  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
+  std::vector<fs::path> all;
+  for (const std::string& name : kind.soils) all.push_back(soil_folder(data_root(), name));
+  return all;
 }
 
 /// The rule of fits: more than 30 % of at least eight runs.

@@ -34,8 +34,9 @@ std::vector<MaterialSource> sources(const ScaleCommandOptions& o) {
   if (o.soil != "all") return {{o.soil, o.soil_folder, o.fit}};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
   std::vector<MaterialSource> all;
-  for (const std::string& soil : soils_with_tracers()) all.push_back({soil, "", ""});
-  if (all.empty()) throw ConfigError({"--soil all: no soil under data/soils has a tracers.csv"});
+  const SoilsOfOneKind kind = soils_of_one_kind();
+  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
+  for (const std::string& soil : kind.soils) all.push_back({soil, "", ""});
   return all;
 }
 
@@ -142,7 +143,7 @@ ScalePlan read_plan(const ScaleCommandOptions& o) {
 }  // namespace
 
 void add_scale_options(CLI::App& command, ScaleCommandOptions& o) {
-  CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils, or all: those with tracers.csv");
+  CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils, or all: those fitted with the same parameters");
   command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")->excludes(soil);
   command.add_option("--fit", o.fit, "fit.json or run folder: its fitted values instead of the nominal ones");
   command.add_option("--radii", o.radii_mm, "mean radii in mm (default 20,16,12.5,10,8)")

@@ -41,7 +41,7 @@ JobOptions job_of(const FitCommandOptions& o, const std::string& soil) {
 void check_all(const FitCommandOptions& o, const std::vector<std::string>& soils) {
   std::vector<std::string> found = problems(o.session);
   if (!o.job.soil_folder.empty()) found.emplace_back("--data is one folder, --soil says all");
-  if (soils.empty()) found.emplace_back("--soil all: no soil under data/soils has a tracers.csv");
+  if (soils.empty()) found.emplace_back("--soil all: there is no soil under data/soils");
   for (const std::string& soil : soils) {
     try {
       refuse_bad_job(read_job(job_of(o, soil)), {});
@@ -108,7 +108,8 @@ void compare(const FitCommandOptions& o, std::vector<FittedSoil> soils, const fs
 }  // namespace
 
 int run_fit_of_all_soils(const FitCommandOptions& o, const std::string& command_line) {
-  const std::vector<std::string> ids = soils_with_tracers();
+  const auto [ids, left_out] = soils_of_one_kind();
+  for (const std::string& sentence : left_out) std::cerr << sentence << '\n';
   check_all(o, ids);
   const fs::path folder = open_folder(o.session);
   const Clock clock(o.session.max_walltime);

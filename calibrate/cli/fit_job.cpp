@@ -17,7 +17,7 @@
 namespace tilth {
 
 void add_job_options(CLI::App& app, JobOptions& o) {
-  CLI::Option* soil = app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand; all: every one with tracers.csv");
+  CLI::Option* soil = app.add_option("--soil", o.soil, "soil under data/soils, e.g. loamy_sand; all: those fitted with the same parameters");
   app.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")
       ->excludes(soil);
   app.add_option("--config", o.config, "changes to parameters, targets and fit (JSON, tilth.fit/1)");

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <map>
 
 #include "calibrate/cli/tool_info.hpp"
 #include "calibrate/config_error.hpp"
@@ -30,11 +32,30 @@ std::filesystem::path chosen_soil_folder(const std::string& soil, const std::str
   return soil_folder(data_root(), soil);
 }
 
-std::vector<std::string> soils_with_tracers() {
-  std::vector<std::string> found;
-  for (const std::string& soil : known_soils(data_root()))
-    if (std::filesystem::exists(soil_folder(data_root(), soil) / "tracers.csv")) found.push_back(soil);
-  return found;
+SoilsOfOneKind soils_of_one_kind() {
+  std::map<std::vector<std::string>, std::vector<std::string>> kinds;
+  SoilsOfOneKind all;
+  for (const std::string& name : known_soils(data_root())) {
+    try {
+      std::vector<std::string> free;
+      for (const SoilParameter& p : load_soil(soil_folder(data_root(), name)).parameters)
+        if (p.estimate) free.push_back(p.id);
+      std::ranges::sort(free);
+      kinds[free].push_back(name);
+    } catch (const ConfigError&) {
+      all.soils.push_back(name);
+    }
+  }
+  const auto largest = std::ranges::max_element(kinds, {}, [](const auto& kind) { return kind.second.size(); });
+  for (auto kind = kinds.begin(); kind != kinds.end(); ++kind)
+    for (const std::string& name : kind->second) {
+      if (kind == largest) all.soils.push_back(name);
+      else
+        all.left_out.push_back(fmt::format("{}: left out of --soil all, it is fitted with other parameters ({})", name,
+                                           fmt::join(kind->first, ", ")));
+    }
+  std::ranges::sort(all.soils);
+  return all;
 }
 
 std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder) {

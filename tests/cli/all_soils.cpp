@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/soil_choice.hpp"
 #include "calibrate/cli/soil_comparison.hpp"
 #include "tests/calibrate/soil_folder.hpp"
 #include "tests/cli/program_run.hpp"
@@ -61,7 +62,7 @@ TEST_CASE("All soils: intervals that overlap are not distinguishable", "[cli][al
         std::string("not known"));
 }
 
-TEST_CASE("All soils: without tracers there is nothing to do, and every soil's mistakes are listed",
+TEST_CASE("All soils: every soil's mistakes are listed",
           "[cli][all_soils][bad_input]") {
   const TempFolder folder("all_soils_bad");
   make_data_root(folder);
@@ -73,8 +74,31 @@ TEST_CASE("All soils: without tracers there is nothing to do, and every soil's m
   CHECK(r.exit_code == exit_bad_input);
   CHECK(r.says({"weak: ", "strong: ", "parameters.csv"}));
   CHECK_FALSE(fs::exists(folder / "run"));
-  for (const char* id : {"weak", "strong"}) fs::remove(folder.path() / "soils" / id / "tracers.csv");
-  CHECK(run({"--soil", "all", "--out", folder / "run"}).says({"no soil under data/soils has a tracers.csv"}));
+}
+
+TEST_CASE("All soils: those fitted with other parameters than most are left out by name", "[cli][all_soils]") {
+  const TempFolder folder("all_soils_kinds");
+  make_data_root(folder);
+  const DataRoot root(folder.path());
+  fs::copy(folder.path() / "soils" / "weak", folder.path() / "soils" / "odd");
+  std::string json = soil_test::read_text(folder.path() / "soils" / "odd" / "soil.json");
+  json.replace(json.find("\"weak\""), 6, "\"odd\"");
+  soil_test::write_text(folder.path() / "soils" / "odd" / "soil.json", json);
+  const fs::path parameters = folder.path() / "soils" / "odd" / "parameters.csv";
+  std::string table = soil_test::read_text(parameters);
+  const std::string free = "friction,lin,0.05,1.5,0.5,1,none,,,contact,,calibrated";
+  REQUIRE(table.find(free) != std::string::npos);
+  table.replace(table.find(free), free.size(), "friction,lin,,,0.5,0,none,,,contact,,fixed");
+  soil_test::write_text(parameters, table);
+  INFO(run({"check", (folder.path() / "soils" / "odd").string()}).errors);
+  const SoilsOfOneKind kind = soils_of_one_kind();
+  CHECK(kind.soils == std::vector<std::string>{"strong", "weak"});
+  REQUIRE(kind.left_out.size() == 1);
+  CHECK(kind.left_out[0].find("odd: left out of --soil all") == 0);
+  // nothing to fit in the sweep: refused, but not before it is said who is meant
+  const ProgramRun r = run({"--soil", "all", "--tests", "sweep", "--out", folder / "run"});
+  CHECK(r.exit_code == exit_bad_input);
+  CHECK(r.says({kind.left_out[0], "weak: ", "strong: "}));
 }
 
 TEST_CASE("All soils: two fits in folders of their own, and what differs", "[cli][all_soils]") {
