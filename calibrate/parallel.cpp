@@ -17,13 +17,12 @@ void parallel_for_each_index(std::size_t n, int num_threads,
     for (std::size_t i = 0; i < n; ++i) body(i);
     return;
   }
-  // One index per task: a body is a whole simulation, so balance matters and overhead does not.
-  tbb::task_arena arena(num_threads);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
+  thread_team(num_threads)(n, body);
 }
 
 std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)> thread_team(int num_threads) {
   const auto arena = std::make_shared<tbb::task_arena>(std::max(1, num_threads));
+  // One index per task: a body is a whole simulation or a thread's share of a step, so balance matters.
   return [arena](std::size_t n, const std::function<void(std::size_t)>& body) {
     arena->execute([&] { tbb::parallel_for(std::size_t{0}, n, body, tbb::simple_partitioner()); });
   };

@@ -25,7 +25,7 @@ struct LinearUncertainty {
   /// along them moves it by less than its standard error, which knows nothing of them.
   bool is_fixed(Eigen::Index j) const;
   Eigen::MatrixXd gain;        ///< (q, num_residuals), parameters moved by residuals: C = G W G'
-  /// (q), error bar over what it would be if the derivatives were free of noise: 1 or more
+  /// (q), error bar over the one that takes the noise of the derivatives for signal: 1 or more
   Eigen::VectorXd noise_factor;
   Eigen::Index num_drowned = 0;  ///< null directions whose derivatives noise alone explains
 };

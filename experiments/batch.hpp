@@ -16,7 +16,7 @@
 namespace tilth {
 
 /// Calls body(k) once for every k in [0, n), in any order and on any thread.
-using ForEach = std::function<void(std::size_t n, const std::function<void(std::size_t)>& body)>;
+using ForEach = SideBySide;
 
 /// How a batch is run; nothing here changes a result.
 struct RunOptions {

@@ -117,7 +117,7 @@ TEST_CASE("Secants: a step stated by the parameter wins over the options, in the
 
 TEST_CASE("Secants: the noise of single runs is read from second differences and carried to the derivatives",
           "[calibrate][secants]") {
-  // Features that do not depend on the parameters, but every run is off by a normal number: d is -2 m(u) and two others.
+  // Features that do not depend on the parameters, but every run is off by a normal number of its own.
   constexpr double scatter = 0.05;
   Eigen::MatrixXd products = Eigen::MatrixXd::Zero(3, 3);
   Eigen::MatrixXd shape;

@@ -9,6 +9,7 @@
 
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/fit_job.hpp"
 #include "calibrate/cli/soil_choice.hpp"
 #include "calibrate/cli/vtk_files.hpp"
 #include "tests/calibrate/soil_folder.hpp"
@@ -72,7 +73,41 @@ TEST_CASE("Tracers: the sites of a plot are one pass of the tool, and carry thei
   CHECK(config.bulk_density_kg_per_m3 == 1450 * (1 + 0.1915));
   REQUIRE(sweeps.front().answers.size() == 6);
   CHECK(sweeps.front().answers[0].feature == "forward_displacement_m@0.03m_0.05m");
+
+  // A preview leaves them out and says so, unless they are asked for.
+  const auto num_of_sweep = [&](bool quick, const std::string& tests) {
+    JobOptions o;
+    o.soil_folder = folder.path().string();
+    o.quick = quick;
+    o.tests = tests;
+    const FitJob job = read_job(o);
+    const bool says_so = std::ranges::any_of(job.soil.warnings, [](const std::string& w) {
+      return w.find("leaves out the 6 targets of the sweep") != std::string::npos;
+    });
+    CHECK(says_so == (quick && tests.empty()));
+    return std::ranges::count(job.soil.targets, "sweep_tillage", &SoilTarget::test_id);
+  };
+  CHECK(num_of_sweep(false, "") == 6);
+  CHECK(num_of_sweep(true, "") == 0);
+  CHECK(num_of_sweep(true, "all") == 6);
+  CHECK(num_of_sweep(true, "sweep") == 6);
+  CHECK(num_of_sweep(false, "mechanical") == 0);
   CHECK(sweeps.front().answers[5].feature == "vertical_displacement_m@0.06m_-0.1m");
+}
+
+TEST_CASE("Program: a sweep on two threads gives the bytes of one", "[cli][sweep][threads]") {
+  const TempFolder folder("sweep_threads");
+  std::vector<std::string> results;
+  for (const char* threads : {"1", "2"}) {
+    const std::string out = folder / threads;
+    REQUIRE(run(sweep_command(out, {"--threads", threads})).exit_code == exit_done);
+    std::string text = text_of(std::filesystem::path(out) / "result.json");
+    // the command line is the only difference
+    for (const std::string& said : {out, std::string("--threads ") + threads})
+      for (std::size_t at = text.find(said); at != std::string::npos; at = text.find(said)) text.erase(at, said.size());
+    results.push_back(text);
+  }
+  CHECK(results[0] == results[1]);
 }
 
 TEST_CASE("Program: a sweep leaves curves, pictures and a ParaView series", "[cli][sweep]") {
