@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "calibrate/cli/diagnosis_decision.hpp"
 #include "calibrate/cli/diagnosis_report.hpp"
 #include "calibrate/cli/exit_code.hpp"
 #include "calibrate/cli/extended_fit.hpp"
@@ -16,16 +17,12 @@
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/soil_choice.hpp"
-#include "calibrate/diagnosis/guards.hpp"
 #include "calibrate/soil_fit.hpp"
 
 namespace tilth {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t max_contenders = 3;
-constexpr double least_inclusion = 0.02;  ///< of a contender that is not named
 
 std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
   if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
@@ -61,50 +58,6 @@ std::string reproducing_command(const DiagnoseOptions& o) {
   std::string text = o.soil_folder.empty() ? "calibrate diagnose --soil " + o.soil : "calibrate diagnose --data " + o.soil_folder;
   if (!o.fit.empty()) text += " --fit " + o.fit;
   return text + fmt::format(" --seed {}{}{}", o.seed, o.quick ? " --quick" : "", o.apply ? " --apply" : "");
-}
-
-/// Effects that are refitted and compared: what is named together as one model, then the most probable others.
-std::vector<std::vector<std::size_t>> contenders_of(const Diagnosis& d) {
-  std::vector<std::vector<std::size_t>> models;
-  std::vector<std::size_t> named;
-  for (const NamedEffect& e : d.effects) named.push_back(e.effect);
-  if (!named.empty()) models.push_back(named);
-  std::vector<std::size_t> order(static_cast<std::size_t>(d.posterior.inclusion.size()));
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  std::ranges::stable_sort(order, std::ranges::greater(),
-                           [&](std::size_t k) { return d.posterior.inclusion[static_cast<Eigen::Index>(k)]; });
-  const bool wants_rivals = !named.empty() || d.verdict == Verdict::set || d.verdict == Verdict::outside_catalogue;
-  for (const std::size_t k : order) {
-    if (!wants_rivals || models.size() >= max_contenders) break;
-    const bool is_named = std::ranges::find(named, k) != named.end();
-    const bool likely = d.posterior.inclusion[static_cast<Eigen::Index>(k)] > least_inclusion;
-    // one rival at least stands beside a name
-    if (!is_named && (likely || models.size() < 2)) models.push_back({k});
-  }
-  return models;
-}
-
-/// The statistics: the decision, or why there is none.
-Diagnosis decided(const std::vector<SoilCase>& soils, const DiagnosisOptions& options) {
-  Diagnosis d;
-  std::string why;
-  for (const SoilCase& s : soils)
-    if (!s.failure.empty()) why += (why.empty() ? "" : "; ") + s.campaign.means.id + ": " + s.failure;
-  if (!why.empty()) {
-    d.reason = why;
-    return d;
-  }
-  std::vector<SoilEvidence> evidence;
-  for (const SoilCase& s : soils) evidence.push_back(s.evidence);
-  d = diagnose(evidence, options);
-  GuardFacts facts;
-  for (const SoilCase& s : soils) {
-    facts.has_replicates = facts.has_replicates && s.campaign.has_replicates;
-    for (const NumericalGate& g : s.gates)
-      if (!g.passed()) facts.failed_gates.push_back(g.id);
-  }
-  apply_guards(facts, d);
-  return d;
 }
 
 /// The contenders an experiment should tell apart: the set, or a suggested name and its rivals.
@@ -159,6 +112,7 @@ int run_diagnose_command(const DiagnoseOptions& o, const std::string& command_li
   ledger.should_stop = [&session] { return session.should_stop(); };
   ledger.progress = [&display](const Progress& p) { display.show(p); };
   const DiagnosisRunner runner(settings, session.context(), ledger);
+  for (const SoilCase& s : result.soils) ledger.num_expected += runner.expected_simulations(s);
   for (std::size_t s = 0; s < result.soils.size(); ++s) runner.gather(result.soils[s], values[s]);
   result.diagnosis = decided(result.soils, settings.statistics);
   const auto models = result.diagnosis.soils.empty() ? std::vector<std::vector<std::size_t>>{} : contenders_of(result.diagnosis);

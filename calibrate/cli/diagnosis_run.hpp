@@ -4,15 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "calibrate/cli/dem_problem.hpp"
-#include "calibrate/cli/effect_choice.hpp"
-#include "calibrate/diagnosis/effect_refit.hpp"
-#include "calibrate/diagnosis/evidence_runs.hpp"
-#include "calibrate/diagnosis/measured_campaign.hpp"
+#include "calibrate/cli/diagnosis_case.hpp"
 #include "calibrate/diagnosis/separability.hpp"
 #include "calibrate/diagnosis/verdict.hpp"
 
@@ -34,53 +30,13 @@ struct DiagnosisSettings {
 /// A quick diagnosis uses preview specimens and fewer packings.
 DiagnosisSettings diagnosis_settings(bool quick, std::uint64_t seed);
 
-/// The disagreement of one experiment, relative, beyond noise.
-struct ExperimentGap {
-  std::string experiment;
-  bool holdout = false;
-  int num_statistics = 0;
-  double gap = 0.0;
-};
-
-/// A model refitted to the same packings as every other one.
-struct RefittedModel {
-  std::vector<std::string> effects;  ///< ids; none: the baseline
-  Refit refit;
-  std::vector<ExperimentGap> gaps;   ///< experiments, fitted then held out, then all of each under the name ""
-};
-
-/// What changing a numerical setting does to the statistics, largest shift over its noise.
-struct NumericalGate {
-  std::string id;
-  bool is_known = false;             ///< false: could not be simulated
-  double largest_shift = 0.0;        ///< |shift| / sqrt(V_ii)
-  std::string statistic;             ///< where
-  bool passed() const { return is_known && largest_shift <= 0.5; }
-};
-
-/// Everything about one soil; filled stage by stage.
-struct SoilCase {
-  MeasuredCampaign campaign;         ///< means, effects among its parameters
-  std::vector<Parameter> parameters;
-  std::vector<Target> targets;
-  std::vector<CandidateChoice> choices;
-  std::vector<Eigen::Index> fitted;  ///< targets that are not held out
-
-  Eigen::VectorXd unit;              ///< best baseline
-  SimulatedEvidence simulated;       ///< all targets
-  SoilEvidence evidence;             ///< fitted targets
-  Eigen::MatrixXd covariance;        ///< (p, p) V of all targets
-  std::vector<NumericalGate> gates;
-  std::vector<RefittedModel> models; ///< the baseline first
-  std::vector<std::string> remarks;
-  std::string failure;               ///< why there is no evidence; empty if there is
-};
-
 /// Runs of one case, for one soil after the other. All simulations go through one ledger.
 class DiagnosisRunner {
  public:
   DiagnosisRunner(const DiagnosisSettings& settings, const RunContext& context, SimulationLedger& ledger);
 
+  /// How many simulations a soil will take with two passes of the baseline and a verdict that calls for refits: for the progress line.
+  std::size_t expected_simulations(const SoilCase& soil) const;
   /// Fits the baseline and simulates the evidence. The fit starts at `values` (of all parameters, physical), or at
   /// the best of a Sobol design within a fifth of the ranges about the nominal values; each pass takes secants on common packings and
   /// goes down by simulated Gauss-Newton steps. Sets of which a test fails lose that test's numbers only.
@@ -99,8 +55,5 @@ class DiagnosisRunner {
   const RunContext& context_;
   SimulationLedger& ledger_;
 };
-
-/// Campaign, parameters and candidates of a soil. @throws ConfigError
-SoilCase soil_case(const SoilData& soil);
 
 }  // namespace tilth

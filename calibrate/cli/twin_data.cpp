@@ -35,8 +35,7 @@ std::vector<Evaluation> specimens(const SoilData& soil, const Eigen::VectorXd& v
   const Simulator laboratory =
       dem_simulator(soil, plan.fidelity, context, TargetScope::all, FailedTest::leaves_others);
   std::vector<std::uint64_t> seeds;
-  for (int n = 0; n < plan.num_replicates; ++n)
-    seeds.push_back(first_packing + plan.seed * packings_per_seed + static_cast<std::uint64_t>(n));
+  for (int n = 0; n < plan.num_replicates; ++n) seeds.push_back(twin_packing(plan.seed, n));
   return laboratory(values.replicate(1, plan.num_replicates), seeds);
 }
 
@@ -58,6 +57,10 @@ std::string reasons(const std::vector<Evaluation>& runs) {
 }
 
 }  // namespace
+
+std::uint64_t twin_packing(std::uint64_t seed, int replicate) {
+  return first_packing + seed * packings_per_seed + static_cast<std::uint64_t>(replicate);
+}
 
 Eigen::VectorXd twin_truth(const SoilData& soil, const TwinPlan& plan) {
   std::mt19937_64 rng = generator(plan.seed, Stream::truth);
@@ -87,10 +90,15 @@ Eigen::VectorXd twin_truth(const SoilData& soil, const TwinPlan& plan) {
 TwinData make_twin(SoilData soil, const TwinPlan& plan, const RunContext& context) {
   set_laboratory(soil, plan.tests);
   add_effect_parameters(soil);
-  TwinData twin;
-  twin.values = twin_truth(soil, plan);
-  const std::vector<Evaluation> runs = specimens(soil, twin.values, plan, context);
+  const Eigen::VectorXd values = twin_truth(soil, plan);
+  const std::vector<Evaluation> runs = specimens(soil, values, plan, context);
+  return twin_of(std::move(soil), plan, values, runs);
+}
 
+TwinData twin_of(SoilData soil, const TwinPlan& plan, const Eigen::VectorXd& values,
+                 const std::vector<Evaluation>& runs) {
+  TwinData twin;
+  twin.values = values;
   std::mt19937_64 rig_rng = generator(plan.seed, Stream::rigs), rng = generator(plan.seed, Stream::specimens);
   std::normal_distribution<double> normal;
   std::map<std::string, double> rig_factors;
@@ -100,7 +108,7 @@ TwinData make_twin(SoilData soil, const TwinPlan& plan, const RunContext& contex
   soil.targets.clear();
   for (std::size_t k = 0; k < planned.size(); ++k) {
     std::vector<SoilTarget> rows;
-    std::vector<double> values;
+    std::vector<double> numbers;
     for (std::size_t n = 0; n < runs.size(); ++n) {
       const double spoil = rig_factors[planned[k].test_id] * std::exp(plan.noise.specimen_cv * normal(rng));
       const bool is_there = runs[n].status == EvaluationStatus::completed &&
@@ -112,13 +120,13 @@ TwinData make_twin(SoilData soil, const TwinPlan& plan, const RunContext& contex
       row.replicate_id = std::to_string(n + 1);
       row.origin = {Provenance::synthetic, "calibrate twin", "made by a model"};
       rows.push_back(row);
-      values.push_back(row.value);
+      numbers.push_back(row.value);
     }
     if (rows.size() < 2)
       throw ConfigError({fmt::format("{}: fewer than two specimens gave a positive number{}; take another seed or a smaller effect",
                                      label(planned[k]), reasons(runs))});
     for (SoilTarget& row : rows) {
-      row.sigma = std::max(least_stated_sigma, log_deviation(values));
+      row.sigma = std::max(least_stated_sigma, log_deviation(numbers));
       soil.targets.push_back(row);
     }
   }

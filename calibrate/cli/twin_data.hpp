@@ -36,11 +36,19 @@ struct TwinData {
 /// nominal value, and within the middle nine tenths of the range; the effects as chosen.
 Eigen::VectorXd twin_truth(const SoilData& soil, const TwinPlan& plan);
 
-/// Simulates the laboratory at the truth, one packing per replicate (seeds from 600 000 000 on, which no fit or diagnosis uses), and
-/// spoils the numbers: value x exp(rig N(0,1) rig_cv + N(0,1) specimen_cv).
+/// Packing of a replicate: seeds from 600 000 000 on, which no fit or diagnosis uses.
+std::uint64_t twin_packing(std::uint64_t seed, int replicate);
+
+/// Spoils the numbers of specimens: value x exp(rig N(0,1) rig_cv + N(0,1) specimen_cv).
 ///
 /// sigma of a row is the standard deviation of the logarithms of its replicates, as a laboratory would state it.
+/// @pre the soil has the targets and effect parameters the specimens were made with
+/// @param runs  one per replicate, a partial simulator's
 /// @throws ConfigError if fewer than two specimens of a number could be made
+TwinData twin_of(SoilData soil, const TwinPlan& plan, const Eigen::VectorXd& values,
+                 const std::vector<Evaluation>& runs);
+
+/// Simulates the laboratory at the truth, one packing per replicate, and spoils the numbers. @throws ConfigError as twin_of()
 TwinData make_twin(SoilData soil, const TwinPlan& plan, const RunContext& context);
 
 }  // namespace tilth

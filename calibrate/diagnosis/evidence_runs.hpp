@@ -43,6 +43,8 @@ struct SimulatedEvidence {
   Eigen::MatrixXd fingerprints;          ///< (p, K) [T(effect) - T(null)] / step, mean over packings
   Eigen::MatrixXd fingerprint_variances; ///< (p, K)
   std::vector<std::string> not_simulated;///< (K) why an effect has no fingerprint, or ""
+  /// (p) of the mean over packings beside their scatter, as an emulator has it; empty: none.
+  Eigen::VectorXd additional_variances = {};
 };
 
 /// Simulates the plan at one point of the unit cube of the free parameters.

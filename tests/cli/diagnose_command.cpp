@@ -176,6 +176,12 @@ TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures; r
   const Json card = Json::parse(soil_test::read_text(folder / "run/diagnosis.json"));
   CHECK(card["schema"] == "tilth.diagnosis/1");
   CHECK(card["preview"] == true);
+  // the first progress line knows about how many simulations there will be
+  const std::size_t said = r.errors.find("of about ");
+  REQUIRE(said != std::string::npos);
+  const int expected = std::stoi(r.errors.substr(said + 9));
+  CHECK(expected > card["num_simulations"].get<int>() / 2);
+  CHECK(expected < card["num_simulations"].get<int>() * 3);
   // nothing is hidden: whatever the verdict, it is no name
   INFO(card["sentence"]);
   CHECK(std::set<std::string>{"none", "set", "inconclusive"}.contains(card["verdict"]));
