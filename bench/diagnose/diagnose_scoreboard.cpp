@@ -4,7 +4,8 @@
 //
 //     build/release/bin/diagnose_scoreboard library                  # once per soil
 //     build/release/bin/diagnose_scoreboard make development         # the hider: data folders
-//     build/release/bin/diagnose_scoreboard seek development         # the seeker, the proofs, the tables
+//     build/release/bin/diagnose_scoreboard seek development         # the seeker and the tables
+//     build/release/bin/diagnose_scoreboard prove development        # the same with gaps by real simulations
 //
 // Everything lies under runs/scoreboard/ and goes on where it was stopped.
 #include <fmt/format.h>
@@ -104,7 +105,8 @@ void add_proofs(const EmulatedLaboratory& laboratory, const HiddenCase& hidden, 
   proofs.push_back(p);
 }
 
-void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& folder, const RunContext& context, Fidelity fidelity) {
+void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& folder, const RunContext& context, Fidelity fidelity,
+                bool with_proofs) {
   const EmulatedLaboratory laboratory(library);
   fmt::print("| statistic | Q2 | leave-one-out rms |\n| --- | ---: | ---: |\n");
   for (const EmulatorQuality& q : laboratory.quality()) fmt::print("| {} | {:.3f} | {:.3f} |\n", q.statistic, q.q2, q.root_mean_square);
@@ -126,8 +128,8 @@ void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& 
   std::vector<ProofJob> jobs;
   std::vector<Proofs> proofs;
   for (std::size_t k = 0; k < cases.size(); ++k)
-    if (findings[k]) add_proofs(laboratory, cases[k], *findings[k], k, jobs, proofs);
-  fmt::print(stderr, "proofs: {} models\n", jobs.size());
+    if (findings[k] && with_proofs) add_proofs(laboratory, cases[k], *findings[k], k, jobs, proofs);
+  if (with_proofs) fmt::print(stderr, "proofs: {} models\n", jobs.size());
   const std::vector<ProvenGap> gaps = prove(laboratory, jobs, fidelity, context);
   for (const Proofs& p : proofs) {
     Score& s = scores[p.score];
@@ -165,7 +167,7 @@ int run(const std::string& step, const std::string& name) {
     fs::create_directories(folder / "data");
     make_cases(draw_cases(batch, drawn_from.choices), soil_folder, plan.fidelity, folder / "data", context);
   } else {
-    seek_batch(batch, library(), folder, context, plan.fidelity);
+    seek_batch(batch, library(), folder, context, plan.fidelity, step == "prove");
   }
   return 0;
 }
@@ -174,9 +176,9 @@ int run(const std::string& step, const std::string& name) {
 
 int main(int argc, char** argv) {
   const std::string step = argc > 1 ? argv[1] : "";
-  const bool is_known = (step == "library" && argc == 2) || ((step == "make" || step == "seek") && argc == 3);
+  const bool is_known = (step == "library" && argc == 2) || ((step == "make" || step == "seek" || step == "prove") && argc == 3);
   if (!is_known) {
-    fmt::print(stderr, "diagnose_scoreboard library | make BATCH | seek BATCH      (development, sealed-1)\n");
+    fmt::print(stderr, "diagnose_scoreboard library | make BATCH | seek BATCH | prove BATCH      (development, sealed-1)\n");
     return 2;
   }
   try {

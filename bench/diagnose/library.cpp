@@ -43,8 +43,8 @@ std::vector<LibraryRow> planned_rows(const LibraryPlan& plan, const std::vector<
   }
   for (const bool costly : {false, true})
     for (int k = 0; k < (costly ? 1 : plan.num_fingerprint_packings); ++k)
-      for (int i = 0; i < (costly ? plan.num_costly_points : plan.num_fingerprint_points); ++i)
-        for (std::size_t c = 0; c < choices.size(); ++c)
+      for (std::size_t c = 0; c < choices.size(); ++c)
+        for (int i = 0; i < (costly ? plan.num_costly_points : plan.num_fingerprint_points); ++i)
           if (choices[c].step.is_active && choices[c].step.is_costly == costly)
             rows.push_back({RowKind::fingerprint, i, packing(paired_packing, k), static_cast<int>(c), {}});
   return rows;
@@ -138,8 +138,12 @@ Library stored_library(const std::filesystem::path& soil_folder, const LibraryPl
   }
   const Simulator laboratory =
       dem_simulator(library.soil, plan.fidelity, context, TargetScope::all, FailedTest::leaves_others);
-  for (std::size_t begin = 0; begin < missing.size(); begin += chunk) {
-    const std::size_t end = std::min(missing.size(), begin + chunk);
+  for (std::size_t begin = 0; begin < missing.size();) {
+    // one law at a time: lanes that differ in their laws wait for each other
+    std::size_t end = begin;
+    while (end < missing.size() && end - begin < chunk && missing[end].packing == missing[begin].packing &&
+           missing[end].candidate == missing[begin].candidate)
+      ++end;
     Eigen::MatrixXd values(static_cast<Eigen::Index>(library.parameters.size()), static_cast<Eigen::Index>(end - begin));
     std::vector<std::uint64_t> packings;
     for (std::size_t k = begin; k < end; ++k) {
@@ -159,6 +163,7 @@ Library stored_library(const std::filesystem::path& soil_folder, const LibraryPl
     }
     std::fclose(out);
     fmt::print(stderr, "library: {} of {} simulations\n", end, missing.size());
+    begin = end;
   }
   return library;
 }

@@ -67,7 +67,7 @@ void add_twin_options(CLI::App& command, TwinOptions& o) {
   CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils whose parameters and state the truth is drawn about");
   command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")->excludes(soil);
   command.add_option("--effect", o.effects, "hide this: id=size or id=typical (calibrate effects); may be repeated")->take_all();
-  command.add_option("--tests", o.tests, "laboratory (default: element tests), bed (cone, vane, heap), all, or test ids")->delimiter(',');
+  command.add_option("--tests", o.tests, "laboratory (default: element tests), bed (cone, vane, heap), sweep (draught and tracers), all, or test ids")->delimiter(',');
   command.add_option("--noise", o.noise, "coefficient of variation of a specimen's numbers (default 0.10)")->check(CLI::Range(0.0, 1.0));
   command.add_option("--rig-noise", o.rig_noise, "that of one unknown factor per rig (default 0.03)")->check(CLI::Range(0.0, 0.5));
   command.add_option("--replicates", o.num_replicates, "specimens of every test (default 5)")->check(CLI::Range(2, 100));

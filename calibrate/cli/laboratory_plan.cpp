@@ -102,20 +102,17 @@ std::vector<std::string> tests_of(const std::vector<PlannedSpecimen>& specimens)
 
 std::vector<std::string> laboratory_tests() { return tests_of(laboratory_specimens()); }
 
-std::vector<std::string> chosen_tests(const std::vector<std::string>& words, FieldTests field) {
+std::vector<std::string> chosen_tests(const std::vector<std::string>& words) {
   std::vector<std::string> known = laboratory_tests();
-  std::vector<std::string> words_of_choice = {"laboratory", "bed", "all"}, chosen, problems;
-  if (field == FieldTests::sweep) {
-    known.emplace_back(sweep_id);
-    words_of_choice.emplace_back("sweep");
-  }
+  known.emplace_back(sweep_id);
+  std::vector<std::string> words_of_choice = {"laboratory", "bed", "all", "sweep"}, chosen, problems;
   words_of_choice.insert(words_of_choice.end(), known.begin(), known.end());
   for (const std::string& word : words) {
     std::vector<std::string> meant = {word};
     if (word == "laboratory") meant = tests_of(element_tests());
     else if (word == "bed") meant = tests_of(bed_tests());
     else if (word == "all") meant = known;
-    else if (word == "sweep" && field == FieldTests::sweep) meant = {sweep_id};
+    else if (word == "sweep") meant = {sweep_id};
     else if (std::ranges::find(known, word) == known.end())
       problems.push_back(unknown_name_sentence("test", word, words_of_choice));
     for (const std::string& id : meant)

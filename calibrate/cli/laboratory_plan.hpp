@@ -14,13 +14,10 @@ namespace tilth {
 /// Tests of the laboratory, without the soil bin.
 std::vector<std::string> laboratory_tests();
 
-/// Is the soil bin to be had beside the laboratory?
-enum class FieldTests { none, sweep };
-
 /// The tests a list of words stands for: test ids, "laboratory" (element tests without steel), "bed" (cone, vane,
-/// heap), "sweep" (the soil bin, if it is to be had), "all".
+/// heap), "sweep" (the soil bin), "all".
 /// @throws ConfigError naming the known words
-std::vector<std::string> chosen_tests(const std::vector<std::string>& words, FieldTests field = FieldTests::none);
+std::vector<std::string> chosen_tests(const std::vector<std::string>& words);
 
 /// Conditions and targets of the chosen tests, put in the place of the soil's own. Values are 0 and sigmas 1: they
 /// are to be filled in. One condition per rig is held out: an interpolation point, for proofs.

@@ -65,7 +65,7 @@ void read_new_study(const SensitivityCommandOptions& o, SensitivityStudy& study,
   SensitivityOptions& options = study.options;
   read_method(o, options, problems);
   try {
-    if (!o.tests.empty()) study.tests = chosen_tests(o.tests, FieldTests::sweep);
+    if (!o.tests.empty()) study.tests = chosen_tests(o.tests);
   } catch (const ConfigError& e) {
     append(e.sentences(), problems);
   }
@@ -99,7 +99,7 @@ void read_extended_study(const SensitivityCommandOptions& o, const SavedStudy& s
   options.packings = {saved.seed, saved.num_packings};
   options.num_rows = o.samples.value_or(2 * saved.num_rows);
   study.tests = saved.tests;
-  if (!o.tests.empty() && chosen_tests(o.tests, FieldTests::sweep) != saved.tests)
+  if (!o.tests.empty() && chosen_tests(o.tests) != saved.tests)
     problems.emplace_back("--tests: the study in --out is of other tests; they cannot change");
   study.fidelity = saved.preview ? Fidelity::preview : Fidelity::search;
   if (!o.method.empty()) {

@@ -48,6 +48,25 @@ double log_deviation(const std::vector<double>& values) {
   return std::sqrt(squares / (n - 1.0));
 }
 
+double deviation(const std::vector<double>& values) {
+  double sum = 0.0, squares = 0.0;
+  const auto n = static_cast<double>(values.size());
+  for (const double v : values) sum += v / n;
+  for (const double v : values) squares += (v - sum) * (v - sum);
+  return std::sqrt(squares / (n - 1.0));
+}
+
+/// Size of a number that may be negative: root mean square over the specimens that have it.
+double size_of(const std::vector<Evaluation>& runs, Eigen::Index k) {
+  double squares = 0.0, n = 0.0;
+  for (const Evaluation& run : runs)
+    if (run.status == EvaluationStatus::completed && std::isfinite(run.features[k])) {
+      squares += run.features[k] * run.features[k];
+      n += 1.0;
+    }
+  return n > 0.0 ? std::sqrt(squares / n) : 0.0;
+}
+
 /// Why tests failed, each reason once.
 std::string reasons(const std::vector<Evaluation>& runs) {
   std::vector<std::string> once;
@@ -102,31 +121,33 @@ TwinData twin_of(SoilData soil, const TwinPlan& plan, const Eigen::VectorXd& val
   std::mt19937_64 rig_rng = generator(plan.seed, Stream::rigs), rng = generator(plan.seed, Stream::specimens);
   std::normal_distribution<double> normal;
   std::map<std::string, double> rig_factors;
-  for (const std::string& test : laboratory_tests()) rig_factors[test] = std::exp(plan.noise.rig_cv * normal(rig_rng));
+  for (const std::string& test : chosen_tests({"all"})) rig_factors[test] = std::exp(plan.noise.rig_cv * normal(rig_rng));
 
   const std::vector<SoilTarget> planned = std::move(soil.targets);
   soil.targets.clear();
   for (std::size_t k = 0; k < planned.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const bool is_signed = planned[k].sigma_kind == SigmaKind::absolute;
+    const double size = is_signed ? size_of(runs, column) : 0.0;
     std::vector<SoilTarget> rows;
     std::vector<double> numbers;
     for (std::size_t n = 0; n < runs.size(); ++n) {
-      const double spoil = rig_factors[planned[k].test_id] * std::exp(plan.noise.specimen_cv * normal(rng));
-      const bool is_there = runs[n].status == EvaluationStatus::completed &&
-                            std::isfinite(runs[n].features[static_cast<Eigen::Index>(k)]) &&
-                            runs[n].features[static_cast<Eigen::Index>(k)] > 0.0;
-      if (!is_there) continue;
+      const double noise = plan.noise.specimen_cv * normal(rng), rig = rig_factors[planned[k].test_id];
+      if (runs[n].status != EvaluationStatus::completed) continue;
+      const double number = runs[n].features[column];
+      if (!std::isfinite(number) || (!is_signed && number <= 0.0)) continue;
       SoilTarget row = planned[k];
-      row.value = spoil * runs[n].features[static_cast<Eigen::Index>(k)];
+      row.value = is_signed ? rig * number + noise * size : rig * std::exp(noise) * number;
       row.replicate_id = std::to_string(n + 1);
       row.origin = {Provenance::synthetic, "calibrate twin", "made by a model"};
       rows.push_back(row);
       numbers.push_back(row.value);
     }
     if (rows.size() < 2)
-      throw ConfigError({fmt::format("{}: fewer than two specimens gave a positive number{}; take another seed or a smaller effect",
-                                     label(planned[k]), reasons(runs))});
+      throw ConfigError({fmt::format("{}: fewer than two specimens gave a {}number{}; take another seed or a smaller effect",
+                                     label(planned[k]), is_signed ? "" : "positive ", reasons(runs))});
     for (SoilTarget& row : rows) {
-      row.sigma = std::max(least_stated_sigma, log_deviation(numbers));
+      row.sigma = is_signed ? std::max(least_stated_sigma * size, deviation(numbers)) : std::max(least_stated_sigma, log_deviation(numbers));
       soil.targets.push_back(row);
     }
   }

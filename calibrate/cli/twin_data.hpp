@@ -18,7 +18,7 @@ struct TwinNoise {
 };
 
 struct TwinPlan {
-  std::vector<std::string> tests;  ///< of the laboratory
+  std::vector<std::string> tests;  ///< of chosen_tests()
   std::vector<ChosenEffect> effects;
   TwinNoise noise;
   int num_replicates = 5;
@@ -39,9 +39,10 @@ Eigen::VectorXd twin_truth(const SoilData& soil, const TwinPlan& plan);
 /// Packing of a replicate: seeds from 600 000 000 on, which no fit or diagnosis uses.
 std::uint64_t twin_packing(std::uint64_t seed, int replicate);
 
-/// Spoils the numbers of specimens: value x exp(rig N(0,1) rig_cv + N(0,1) specimen_cv).
+/// Spoils the numbers of specimens: value x exp(rig N(0,1) rig_cv + N(0,1) specimen_cv); of what may be negative (displacements)
+/// value x rig + N(0,1) specimen_cv x root mean square of the number.
 ///
-/// sigma of a row is the standard deviation of the logarithms of its replicates, as a laboratory would state it.
+/// sigma of a row is the standard deviation of its replicates (of their logarithms where they are positive), as a laboratory would state it.
 /// @pre the soil has the targets and effect parameters the specimens were made with
 /// @param runs  one per replicate, a partial simulator's
 /// @throws ConfigError if fewer than two specimens of a number could be made

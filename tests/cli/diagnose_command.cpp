@@ -144,6 +144,39 @@ TEST_CASE("Twin: noise has the size that was asked for", "[cli][twin]") {
   CHECK(std::abs(sum / n) < 0.06);
 }
 
+TEST_CASE("Twin: numbers that may be negative get noise of their own size, the others a factor", "[cli][twin]") {
+  SoilData soil = loamy_sand();
+  TwinPlan plan;
+  plan.tests = chosen_tests({"sweep"});
+  plan.num_replicates = 40;
+  plan.noise = {0.1, 0.0};
+  set_laboratory(soil, plan.tests);
+  add_effect_parameters(soil);
+  std::vector<Evaluation> runs;
+  for (int n = 0; n < plan.num_replicates; ++n) {
+    Evaluation e{EvaluationStatus::completed, Eigen::VectorXd(static_cast<Eigen::Index>(soil.targets.size())), ""};
+    for (std::size_t k = 0; k < soil.targets.size(); ++k)  // displacements of -20 mm, all else 300
+      e.features[static_cast<Eigen::Index>(k)] = soil.targets[k].sigma_kind == SigmaKind::absolute ? -0.02 : 300.0;
+    runs.push_back(e);
+  }
+  const TwinData twin = twin_of(soil, plan, twin_truth(soil, plan), runs);
+  REQUIRE(twin.soil.targets.size() == 40 * soil.targets.size());
+  double squares = 0.0;
+  int num_signed = 0;
+  for (const SoilTarget& t : twin.soil.targets) {
+    if (t.sigma_kind != SigmaKind::absolute) {
+      CHECK(t.value > 0.0);
+      CHECK(std::abs(t.sigma - 0.1) < 0.05);
+      continue;
+    }
+    CHECK(std::abs(t.sigma - 0.002) < 0.001);
+    squares += std::pow((t.value + 0.02) / 0.002, 2);
+    ++num_signed;
+  }
+  REQUIRE(num_signed == 40 * 18);
+  CHECK(squares / num_signed == Approx(1.0).epsilon(0.2));
+}
+
 TEST_CASE("Candidates: one per size of the catalogue, active where a test of the soil depends on it", "[cli][diagnosis]") {
   SoilData soil = loamy_sand();
   add_effect_parameters(soil);
