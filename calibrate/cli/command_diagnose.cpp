@@ -30,10 +30,8 @@ constexpr double least_inclusion = 0.02;  ///< of a contender that is not named
 std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
   if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
-  const SoilsOfOneKind kind = soils_of_one_kind();
-  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
   std::vector<fs::path> all;
-  for (const std::string& name : kind.soils) all.push_back(soil_folder(data_root(), name));
+  for (const std::string& name : soils_of_all()) all.push_back(soil_folder(data_root(), name));
   return all;
 }
 

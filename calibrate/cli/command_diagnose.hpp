@@ -12,7 +12,7 @@
 namespace tilth {
 
 struct DiagnoseOptions {
-  std::string soil;         ///< or "all": every soil under data/soils, pooled
+  std::string soil;         ///< or "all": soils_of_all(), pooled
   std::string soil_folder;
   std::string fit;          ///< baseline values from a fit instead of an own one
   std::uint64_t seed = 1;
