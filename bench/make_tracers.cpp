@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The Tilth authors
 // SPDX-License-Identifier: BSD-3-Clause
 // Synthetic tracers for a soil: a sweep in a bed of finer aggregates than a fit uses, on other packings,
-// with noise of a survey. Prints tracers.csv. From the repository's root:
+// with noise of a survey. Prints tracers.csv (a minute or two per packing). From the repository's root:
 //
 //     build/release/bin/make_tracers loamy_sand bond_modulus_Pa=4e6 bond_tensile_strength_Pa=5e3 friction=0.45
 #include <fmt/format.h>
@@ -91,8 +91,8 @@ int run(const std::string& soil_id, const std::vector<std::string>& settings) {
   });
   for (const ExperimentResult& r : runs)
     if (r.status != RunStatus::completed) throw std::runtime_error(r.message);
-  print_tracers(runs, fmt::format("bench/make_tracers; aggregates of {} mm radius; truth {}", 1e3 * radius_m,
-                                  fmt::join(settings, " ")));
+  print_tracers(runs, fmt::format("bench/make_tracers; aggregates of {} mm radius; packings {}; survey noise {} mm; truth {}",
+                                  1e3 * radius_m, fmt::join(packings, " and "), 1e3 * survey_sd_m, fmt::join(settings, " ")));
   return 0;
 }
 

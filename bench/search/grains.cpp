@@ -7,6 +7,7 @@
 
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/run_config.hpp"
+#include "calibrate/cli/target_choice.hpp"
 #include "calibrate/soil_fit.hpp"
 
 namespace tilth::bench {
@@ -16,7 +17,10 @@ struct Laboratory {
   SoilData soil = load_soil(std::string(TILTH_SOURCE_DIR) + "/data/soils/loamy_sand");
   PackingStore packings{default_packing_folder()};
   RunContext context{packings, 1};
-  Laboratory() { std::erase_if(soil.targets, &SoilTarget::holdout); }
+  Laboratory() {
+    leave_out_sweep(soil);
+    std::erase_if(soil.targets, &SoilTarget::holdout);
+  }
 
   Eigen::MatrixXd all_parameters(const Eigen::MatrixXd& free) const {
     Eigen::MatrixXd all = nominal_values(soil).replicate(1, free.cols());

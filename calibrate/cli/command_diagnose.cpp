@@ -17,6 +17,7 @@
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/run_folder.hpp"
 #include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/cli/target_choice.hpp"
 #include "calibrate/soil_fit.hpp"
 
 namespace tilth {
@@ -27,10 +28,8 @@ namespace fs = std::filesystem;
 std::vector<fs::path> soil_folders(const DiagnoseOptions& o) {
   if (o.soil != "all") return {chosen_soil_folder(o.soil, o.soil_folder)};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
-  const SoilsOfOneKind kind = soils_of_one_kind();
-  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
   std::vector<fs::path> all;
-  for (const std::string& name : kind.soils) all.push_back(soil_folder(data_root(), name));
+  for (const std::string& name : soils_of_all()) all.push_back(soil_folder(data_root(), name));
   return all;
 }
 
@@ -54,9 +53,34 @@ std::optional<Eigen::VectorXd> given_values(const std::string& fit, const SoilCa
   return values;
 }
 
+/// Leaves the targets that are diagnosed: a bin in each of some 500 simulations is there only when asked for.
+/// @return what the report must say of it; empty if nothing
+std::string choose_targets(const DiagnoseOptions& o, SoilData& soil) {
+  if (!o.tests.empty()) choose_tests(o.tests, soil);
+  const std::size_t num_left_out = o.tests.empty() ? leave_out_sweep(soil) : 0;
+  if (num_left_out == 0) return "";
+  return fmt::format("the {} targets of the sweep are left out; --tests all takes them in", num_left_out);
+}
+
+/// The cases with what the report must say of their data.
+void read_soils(const DiagnoseOptions& o, DiagnosisResult& result, DiagnosisContext& context) {
+  for (const fs::path& folder : soil_folders(o)) {
+    SoilData soil = load_soil(folder);
+    const std::string left_out = choose_targets(o, soil);
+    result.soils.push_back(soil_case(soil));
+    if (!left_out.empty()) {
+      std::cerr << soil.id << ": " << left_out << '\n';
+      result.soils.back().remarks.push_back(left_out);
+    }
+    context.provenance_sentence += (context.provenance_sentence.empty() ? "" : "; ") + soil.id + ": " + provenance_sentence(soil);
+    for (const fs::path& file : soil_tables(folder)) context.inputs.push_back(file);
+  }
+}
+
 std::string reproducing_command(const DiagnoseOptions& o) {
   std::string text = o.soil_folder.empty() ? "calibrate diagnose --soil " + o.soil : "calibrate diagnose --data " + o.soil_folder;
   if (!o.fit.empty()) text += " --fit " + o.fit;
+  if (!o.tests.empty()) text += " --tests " + o.tests;
   return text + fmt::format(" --seed {}{}{}", o.seed, o.quick ? " --quick" : "", o.apply ? " --apply" : "");
 }
 
@@ -78,6 +102,9 @@ void add_diagnose_options(CLI::App& command, DiagnoseOptions& o) {
   CLI::Option* soil = command.add_option("--soil", o.soil, "soil under data/soils, or all: pooled");
   command.add_option("--data", o.soil_folder, "a folder in the soil format, instead of --soil")->excludes(soil);
   command.add_option("--fit", o.fit, "fit.json or run folder: baseline values, instead of an own fit");
+  command.add_option("--tests", o.tests,
+                     "whose targets: mechanical, sweep (draught, tracers) or all (default: without the sweep, where others are)")
+      ->check(CLI::IsMember({"mechanical", "sweep", "all"}));
   command.add_option("--seed", o.seed, "first packing seed (default 1)")->check(CLI::NonNegativeNumber);
   command.add_flag("--quick", o.quick, "a labelled preview: small specimens, fewer packings");
   command.add_flag("--apply", o.apply, "write fit.json of the model with the named effect");
@@ -90,12 +117,7 @@ int run_diagnose_command(const DiagnoseOptions& o, const std::string& command_li
   const DiagnosisSettings settings = diagnosis_settings(o.quick, o.seed);
   DiagnosisResult result;
   DiagnosisContext context{.settings = settings, .command = reproducing_command(o), .preview = o.quick};
-  for (const fs::path& folder : soil_folders(o)) {
-    const SoilData soil = load_soil(folder);
-    result.soils.push_back(soil_case(soil));
-    context.provenance_sentence += (context.provenance_sentence.empty() ? "" : "; ") + soil.id + ": " + provenance_sentence(soil);
-    for (const fs::path& file : soil_tables(folder)) context.inputs.push_back(file);
-  }
+  read_soils(o, result, context);
   std::vector<std::optional<Eigen::VectorXd>> values;
   for (const SoilCase& s : result.soils) values.push_back(given_values(o.fit, s));
   const std::string stem = result.soils.size() > 1 ? "all" : result.soils.front().campaign.means.id;

@@ -12,9 +12,10 @@
 namespace tilth {
 
 struct DiagnoseOptions {
-  std::string soil;         ///< or "all": every soil under data/soils, pooled
+  std::string soil;         ///< or "all": soils_of_all(), pooled
   std::string soil_folder;
   std::string fit;          ///< baseline values from a fit instead of an own one
+  std::string tests;        ///< "mechanical", "sweep" or "all"; empty: without the sweep where the soil has other targets
   std::uint64_t seed = 1;
   bool quick = false;
   bool apply = false;

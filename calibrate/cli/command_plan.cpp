@@ -87,6 +87,7 @@ int run_plan(const PlanOptions& o) {
   const bool has_holdouts = std::ranges::any_of(job.soil.targets, &SoilTarget::holdout);
   const int threads = threads_or_all(o.num_threads);
   std::set<std::string> unknown;
+  for (const std::string& w : job.soil.warnings) std::cerr << w << '\n';
   std::cout << fmt::format("{}: {}\n{:<14} {:<10} {:>6} {:>18} {:>12}\n", job.soil.name,
                            provenance_sentence(job.soil), "stage", "simulator", "runs",
                            "core-s per run", "core-hours");

@@ -34,9 +34,7 @@ std::vector<MaterialSource> sources(const ScaleCommandOptions& o) {
   if (o.soil != "all") return {{o.soil, o.soil_folder, o.fit}};
   if (!o.fit.empty()) throw ConfigError({"--fit is of one soil, --soil says all"});
   std::vector<MaterialSource> all;
-  const SoilsOfOneKind kind = soils_of_one_kind();
-  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
-  for (const std::string& soil : kind.soils) all.push_back({soil, "", ""});
+  for (const std::string& soil : soils_of_all()) all.push_back({soil, "", ""});
   return all;
 }
 

@@ -13,7 +13,7 @@
 namespace tilth {
 
 struct ScaleCommandOptions {
-  std::string soil;         ///< or "all": every soil with tracers.csv
+  std::string soil;         ///< or "all": soils_of_all()
   std::string soil_folder;
   std::string fit;
   std::vector<double> radii_mm;

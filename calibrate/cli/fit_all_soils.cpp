@@ -108,8 +108,7 @@ void compare(const FitCommandOptions& o, std::vector<FittedSoil> soils, const fs
 }  // namespace
 
 int run_fit_of_all_soils(const FitCommandOptions& o, const std::string& command_line) {
-  const auto [ids, left_out] = soils_of_one_kind();
-  for (const std::string& sentence : left_out) std::cerr << sentence << '\n';
+  const std::vector<std::string> ids = soils_of_all();
   check_all(o, ids);
   const fs::path folder = open_folder(o.session);
   const Clock clock(o.session.max_walltime);

@@ -9,8 +9,8 @@
 
 namespace tilth {
 
-/// Fits every soil that has a tracers.csv, each into OUT/<soil> as `--soil <soil>` would, then draws the standard sweep
-/// through all of them and writes OUT/comparison.txt, comparison.json and figures/comparison.svg. --resume goes on
+/// Fits the soils that are fitted with the same parameters, each into OUT/<soil> as `--soil <soil>` would, then draws the
+/// standard sweep through all of them and writes OUT/comparison.txt, comparison.json and figures/comparison.svg. --resume goes on
 /// where it stopped; --max-walltime is for all together.
 /// @return the worst exit code of the fits: bad input, budget, failed runs, unreachable, hold-out, done
 /// @throws ConfigError with the problems of all soils, before anything runs

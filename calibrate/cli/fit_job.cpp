@@ -10,6 +10,7 @@
 #include "calibrate/cli/dem_problem.hpp"
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/cli/target_choice.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/fit.hpp"
 #include "calibrate/soil_fit.hpp"
@@ -41,28 +42,23 @@ std::string job_command(const JobOptions& o) {
 
 namespace {
 
-bool is_of_sweep(const SoilTarget& t) { return t.test_id == "sweep_tillage"; }
-
-/// Leaves the targets of the tests asked for. @throws ConfigError if none is left to fit
-void choose_tests(const std::string& tests, SoilData& soil) {
-  if (tests == "all") return;
-  const bool sweep = tests == "sweep";
-  std::erase_if(soil.targets,
-                [sweep](const SoilTarget& t) { return is_of_sweep(t) != sweep; });
-  if (std::ranges::all_of(soil.targets, &SoilTarget::holdout))
-    throw ConfigError({fmt::format("--tests {}: {} has no such target to fit", tests, soil.id)});
+/// Leaves the targets of the tests asked for; a preview that was not asked for any leaves out the sweep.
+void choose_targets(const JobOptions& o, SoilData& soil) {
+  if (!o.tests.empty()) return choose_tests(o.tests, soil);
+  if (const std::size_t num_left_out = o.quick ? leave_out_sweep(soil) : 0; num_left_out > 0)
+    soil.warnings.push_back(
+        fmt::format("this preview leaves out the {} targets of the sweep; --tests all takes them in", num_left_out));
 }
 
-/// Leaves the targets of the tests asked for; a preview that was not asked for any leaves out the sweep.
-void choose_targets(const JobOptions& o, FitJob& job) {
-  const auto num_sweep = std::ranges::count_if(job.soil.targets, is_of_sweep);
-  const bool has_others = std::ranges::any_of(
-      job.soil.targets, [](const SoilTarget& t) { return !is_of_sweep(t) && !t.holdout; });
-  if (!o.tests.empty() || !o.quick || num_sweep == 0 || !has_others)
-    return choose_tests(o.tests.empty() ? "all" : o.tests, job.soil);
-  choose_tests("mechanical", job.soil);
-  job.soil.warnings.push_back(
-      fmt::format("this preview leaves out the {} targets of the sweep; --tests all takes them in", num_sweep));
+/// Numbers of a model beside numbers of a soil: the share that is made up must not go unsaid.
+void warn_of_synthetic_targets(SoilData& soil) {
+  const auto num_fitted = std::ranges::count(soil.targets, false, &SoilTarget::holdout);
+  const auto num_synthetic = std::ranges::count_if(soil.targets, [](const SoilTarget& t) {
+    return !t.holdout && t.origin.provenance == Provenance::synthetic;
+  });
+  if (num_synthetic > 0 && num_synthetic < num_fitted)
+    soil.warnings.push_back(fmt::format("{} of {} targets of the fit are synthetic: made by a model, they say nothing about soil",
+                                        num_synthetic, num_fitted));
 }
 
 }  // namespace
@@ -71,7 +67,7 @@ FitJob read_job(const JobOptions& o) {
   FitJob job;
   const std::filesystem::path folder = chosen_soil_folder(o.soil, o.soil_folder);
   job.soil = load_soil(folder);
-  choose_targets(o, job);
+  choose_targets(o, job.soil);
   job.options = o.quick ? quick_fit_options() : FitOptions{};
   job.options.seed = o.seed;
   job.options.force = o.force;
@@ -84,6 +80,7 @@ FitJob read_job(const JobOptions& o) {
     job.search = Fidelity::preview;
     job.confirm = Fidelity::search;
   }
+  warn_of_synthetic_targets(job.soil);
   (void)material_of(job.soil, nominal_values(job.soil));
   return job;
 }

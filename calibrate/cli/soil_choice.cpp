@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <map>
 
 #include "calibrate/cli/tool_info.hpp"
@@ -56,6 +57,12 @@ SoilsOfOneKind soils_of_one_kind() {
     }
   std::ranges::sort(all.soils);
   return all;
+}
+
+std::vector<std::string> soils_of_all() {
+  const SoilsOfOneKind kind = soils_of_one_kind();
+  for (const std::string& sentence : kind.left_out) std::cerr << sentence << '\n';
+  return kind.soils;
 }
 
 std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder) {

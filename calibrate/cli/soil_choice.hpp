@@ -23,6 +23,9 @@ struct SoilsOfOneKind {
 /// A soil that cannot be read is among `soils`, so that its mistakes come to light.
 SoilsOfOneKind soils_of_one_kind();
 
+/// The soils of soils_of_one_kind(). Who is left out is told on standard error.
+std::vector<std::string> soils_of_all();
+
 /// The tables of a soil folder that are there: what a result depends on.
 std::vector<std::filesystem::path> soil_tables(const std::filesystem::path& folder);
 

@@ -67,7 +67,7 @@ TEST_CASE("Supersession: a measured row replaces the derived one without touchin
 
 TEST_CASE("Supersession: another condition supersedes nothing", "[calibrate][soil_data]") {
   SoilFolder folder("loamy_sand", "supersede_other");
-  folder.append("conditions.csv", "dry,0.02,1450,,10000;20000;40000,,,,own test");
+  folder.append("conditions.csv", "dry,0.02,1450,,10000;20000;40000,,,,,,own test");
   std::string row = replicate("a");
   folder.append("measurements.csv", row.replace(row.find("shear_drained"), 13, "dry"));
   const SoilData soil = load_soil(folder.path());
@@ -156,7 +156,8 @@ TEST_CASE("Fit tables: log rows compare logarithms, tied rows are not estimated"
 
 TEST_CASE("Config: overrides reach the table, mistakes are listed together",
           "[calibrate][soil_data]") {
-  SoilData soil = load_soil(soil_test::data_root() / "soils" / "loamy_sand");
+  const SoilFolder folder("loamy_sand", "config_good");
+  SoilData soil = load_soil(folder.path());
   std::vector<std::string> found;
   const JsonDocument good = parse_json(
       R"({"parameters": [{"name": "friction", "value": 0.4},

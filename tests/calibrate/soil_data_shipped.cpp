@@ -9,6 +9,7 @@
 #include "calibrate/soil_fit.hpp"
 #include "tests/calibrate/soil_folder.hpp"
 
+using Catch::Matchers::Contains;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using namespace tilth;
@@ -33,6 +34,15 @@ const SoilTarget& target(const SoilData& soil, const std::string& observable,
   }
   throw std::logic_error("no target " + observable);
 }
+
+std::vector<SoilTarget> of_sweep(const SoilData& soil, bool wanted) {
+  std::vector<SoilTarget> rows;
+  for (const SoilTarget& row : soil.targets)
+    if ((row.test_id == "sweep_tillage") == wanted) rows.push_back(row);
+  return rows;
+}
+
+std::vector<SoilTarget> mechanical(const SoilData& soil) { return of_sweep(soil, false); }
 
 constexpr double head_m = 1.0;                  // 100 cm water
 constexpr double suction_Pa = 98.0665 * 100.0;  // of that head
@@ -140,12 +150,40 @@ TEST_CASE("Shipped soils: independent observations outnumber free parameters",
     CAPTURE(name);
     const SoilData soil = shipped(name);
     CHECK(num_free_parameters(soil.parameters) == 3);
-    CHECK(num_independent_observations(soil.targets) == (name == "coarse_sand" ? 5 : 4));
+    const std::size_t num_mechanical = name == "coarse_sand" ? 5 : 4;
+    // two depths times five offsets are fitted, three directions each
+    CHECK(num_independent_observations(soil.targets) == num_mechanical + 30);
+    CHECK(num_independent_observations(mechanical(soil)) == num_mechanical);
     // The fit core counts distinct groups; both counts must be the same.
     CHECK(num_independent_observations(fit_targets(soil)) ==
           num_independent_observations(soil.targets));
     CHECK(problems(fit_targets(soil)).empty());
     CHECK(problems(fit_parameters(soil)).empty());
+  }
+}
+
+TEST_CASE("Shipped soils: tracers are synthetic, tell their truth and hold out one depth", "[calibrate][soil_data]") {
+  for (const std::string& name : danish_soils) {
+    CAPTURE(name);
+    const SoilData soil = shipped(name);
+    const std::vector<SoilTarget> rows = of_sweep(soil, true);
+    REQUIRE(rows.size() == 3 * 5 * 3);  // depths, offsets, directions
+    for (const SoilTarget& row : rows) {
+      CHECK(row.origin.provenance == Provenance::synthetic);
+      for (const char* part : {"bench/make_tracers", "radius", "packings 700001 and 700002", "noise", "truth bond_modulus_Pa="})
+        CHECK_THAT(row.origin.source, Contains(part));
+      CHECK(row.holdout == (soil.condition(row.condition_id)->number("tracer_depth_m") == 0.05));
+    }
+    // the truth is one a fit can find
+    for (const SoilParameter& p : soil.parameters) {
+      const std::string& source = rows.front().origin.source;
+      const auto at = source.find(" " + p.id + "=");
+      CHECK((at != std::string::npos) == (p.estimate && !p.tied_to));
+      if (at == std::string::npos) continue;
+      const double truth = std::stod(source.substr(at + p.id.size() + 2));
+      CHECK(truth > p.lower);
+      CHECK(truth < p.upper);
+    }
   }
 }
 

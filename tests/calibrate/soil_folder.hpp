@@ -3,6 +3,8 @@
 // A copy of a shipped soil folder that a test may spoil; removed at the end.
 #pragma once
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -37,15 +39,21 @@ inline bool mentions(const std::vector<std::string>& sentences,
   });
 }
 
+/// Copies a shipped soil without its tracers: most tests are about the rows of measurements.csv.
+inline void copy_without_tracers(const std::string& soil, const std::filesystem::path& to) {
+  std::filesystem::copy(data_root() / "soils" / soil, to);
+  std::filesystem::remove(to / "tracers.csv");
+}
+
 class SoilFolder {
  public:
-  /// `test_name` keeps tests that run side by side apart.
+  /// The shipped soil without its tracers. `test_name` and the process keep tests that run side by side apart.
   SoilFolder(const std::string& soil, const std::string& test_name)
-      : root_(std::filesystem::temp_directory_path() / ("tilth_soil_test_" + test_name)),
+      : root_(std::filesystem::temp_directory_path() / ("tilth_soil_test_" + test_name + "_" + std::to_string(::getpid()))),
         path_(root_ / soil) {
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
-    std::filesystem::copy(data_root() / "soils" / soil, path_);
+    copy_without_tracers(soil, path_);
   }
   ~SoilFolder() {
     std::error_code ignored;

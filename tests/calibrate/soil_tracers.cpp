@@ -25,7 +25,7 @@ const std::string good =
 struct TracerFolder {
   SoilFolder folder;
   TracerFolder(const std::string& name, const std::string& table) : folder("loamy_sand", "tracers_" + name) {
-    folder.append("conditions.csv", "bin_A,0.191,1450,9806.65,,,,,one plot");
+    folder.append("conditions.csv", "bin_A,0.191,1450,9806.65,,,,,0.1,0.889,one plot");
     soil_test::write_text(folder.path() / "tracers.csv", table);
   }
 };

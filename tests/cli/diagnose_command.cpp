@@ -12,6 +12,7 @@
 #include "calibrate/cli/extended_fit.hpp"
 #include "calibrate/cli/fit_card.hpp"
 #include "calibrate/cli/laboratory_plan.hpp"
+#include "calibrate/cli/target_choice.hpp"
 #include "calibrate/cli/twin_data.hpp"
 #include "calibrate/cli/twin_files.hpp"
 #include "calibrate/cli/run_config.hpp"
@@ -39,7 +40,14 @@ std::string whole_folder(const fs::path& folder) {
   return text;
 }
 
-SoilData loamy_sand() { return load_soil(soil_test::data_root() / "soils" / "loamy_sand"); }
+SoilData loamy_sand_with_tracers() { return load_soil(soil_test::data_root() / "soils" / "loamy_sand"); }
+
+/// As it is diagnosed where nobody asks for the sweep.
+SoilData loamy_sand() {
+  SoilData soil = loamy_sand_with_tracers();
+  leave_out_sweep(soil);
+  return soil;
+}
 
 }  // namespace
 
@@ -187,6 +195,11 @@ TEST_CASE("Candidates: one per size of the catalogue, active where a test of the
   CHECK(choices.size() == 28);
   CHECK(find("plastic_contact").step.is_active);
   CHECK_FALSE(find("tool_adhesion").step.is_active);
+  SoilData with_sweep = loamy_sand_with_tracers();
+  add_effect_parameters(with_sweep);
+  CHECK(std::ranges::any_of(candidate_choices(with_sweep), [](const CandidateChoice& c) {
+    return c.candidate.id == "tool_adhesion" && c.step.is_active;
+  }));
   CHECK(find("particle_size").step.is_costly);
   CHECK(find("particle_size").candidate.typical == 0.3);
   CHECK(find("particle_size").step.step() == -0.3);
@@ -301,6 +314,29 @@ TEST_CASE("Diagnose: data that cannot be diagnosed are refused or answered, neve
     CHECK(r.exit_code == exit_budget);
     CHECK(r.says({"karlsruhe_fine_sand: left out of --soil all", "contact_modulus_Pa"}));
     CHECK_FALSE(r.says({"loamy_sand: left out"}));
+  }
+  SECTION("the sweep is diagnosed when it is asked for") {
+    const auto diagnosed = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> words = {"diagnose", "--soil", "loamy_sand", "--quick", "--max-walltime", "0:00:01",
+                                        "--out", folder / "run"};
+      words.insert(words.end(), more.begin(), more.end());
+      const ProgramRun r = run(words);
+      CHECK(r.exit_code == exit_budget);
+      CHECK(r.says({"loamy_sand: the 45 targets of the sweep are left out; --tests all"}) == more.empty());
+      CHECK((soil_test::read_text(folder / "run/diagnosis.txt").find("45 targets of the sweep") != std::string::npos) == more.empty());
+      std::set<std::string> tests;
+      const Json config = Json::parse(soil_test::read_text(folder / "run/config.json"));
+      for (const Json& t : config["soils"][0]["targets"]) {
+        const std::string name = t["name"];
+        tests.insert(name.substr(0, name.find('/')));
+      }
+      return tests;
+    };
+    const std::set<std::string> mechanical = {"confined_compression", "direct_shear", "unconfined_compression"};
+    CHECK(diagnosed({}) == mechanical);
+    CHECK(diagnosed({"--tests", "mechanical"}) == mechanical);
+    CHECK(diagnosed({"--tests", "sweep"}) == std::set<std::string>{"sweep_tillage"});
+    CHECK(diagnosed({"--tests", "all"}).size() == 4);
   }
   SECTION("too many failed runs: the report is written, the exit code says so") {
     REQUIRE(run({"twin", "--soil", "loamy_sand", "--quick", "--tests", "confined_compression", "--replicates", "3",

@@ -136,7 +136,8 @@ TEST_CASE("Fit: too many failed runs end it with exit code 5, each recorded", "[
 
 TEST_CASE("Config: it frees, cuts ties and holds out", "[cli][config]") {
   const TempFolder folder("run_config");
-  SoilData soil = load_soil(soil_test::data_root() / "soils" / "loamy_sand");
+  const soil_test::SoilFolder tables("loamy_sand", "run_config");
+  SoilData soil = load_soil(tables.path());
   FitOptions options;
   apply_run_config(
       folder.write("fit.json", R"({"schema": "tilth.fit/1",

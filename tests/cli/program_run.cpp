@@ -126,7 +126,7 @@ ProgramRun run_and_signal(const std::vector<std::string>& arguments, const fs::p
 
 std::string one_test_soil(const TempFolder& folder) {
   const fs::path soil = folder.path() / "loamy_sand";
-  fs::copy(soil_test::data_root() / "soils" / "loamy_sand", soil);
+  soil_test::copy_without_tracers("loamy_sand", soil);
   soil_test::write_text(
       soil / "measurements.csv",
       "testId,observableId,conditionId,xId,x,value,sigma,sigma_kind,replicateId,weight,holdout,"

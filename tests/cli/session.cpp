@@ -176,7 +176,12 @@ TEST_CASE("Plan: counts runs and core-hours, and starts nothing", "[cli][session
   const ProgramRun r = run({"plan", "--soil", "loamy_sand"});
   CHECK(r.exit_code == exit_done);
   CHECK_THAT(r.output, Contains("local search") && Contains("core-hours") &&
-                           Contains("3 free parameters, 4 independent observations") && !Contains("nan"));
+                           Contains("3 free parameters, 34 independent observations") && !Contains("nan"));
+  CHECK(r.says({"30 of 34 targets of the fit are synthetic"}));
+  const ProgramRun mechanical = run({"plan", "--soil", "loamy_sand", "--tests", "mechanical"});
+  CHECK_THAT(mechanical.output, Contains("3 free parameters, 4 independent observations"));
+  CHECK_FALSE(mechanical.says({"synthetic"}));
+  CHECK(run({"plan", "--soil", "loamy_sand", "--quick"}).says({"leaves out the 45 targets of the sweep"}));
   CHECK(run({"plan", "--soil", "moon_dust"}).exit_code == exit_bad_input);
 }
 
