@@ -139,16 +139,27 @@ double Emulator::predict_mean(const Eigen::VectorXd& point) const {
 }
 
 EmulatorPrediction Emulator::predict(const Eigen::VectorXd& point) const {
-  const Eigen::VectorXd r = correlations(point, lengths_);
-  const Eigen::VectorXd f = trend_terms(point);
+  EmulatorPrediction p = predict(correlations(point, lengths_), trend_terms(point), 1.0);
+  p.mean += offset_;
+  return p;
+}
+
+EmulatorPrediction Emulator::predict_difference(const Eigen::VectorXd& high, const Eigen::VectorXd& low) const {
+  double together = 1.0;  // correlation of the two
+  for (Eigen::Index j = 0; j < high.size(); ++j) together *= correlation(options_.kernel, high[j] - low[j], lengths_[j]);
+  return predict(correlations(high, lengths_) - correlations(low, lengths_), trend_terms(high) - trend_terms(low),
+                 2.0 * (1.0 - together));
+}
+
+EmulatorPrediction Emulator::predict(const Eigen::VectorXd& r, const Eigen::VectorXd& f, double prior) const {
   const Eigen::VectorXd white = solution_.lower.triangularView<Eigen::Lower>().solve(r);
-  // Universal kriging: 1 - r'K^-1 r + h' (F'K^-1 F)^-1 h with h = f - F'K^-1 r.
+  // Universal kriging: prior - r'K^-1 r + h' (F'K^-1 F)^-1 h with h = f - F'K^-1 r.
   const Eigen::VectorXd h = f - solution_.white_trend.transpose() * white;
   const Eigen::VectorXd white_h =
       solution_.trend_factor.transpose().triangularView<Eigen::Lower>().solve(h);
-  const double share = std::max(0.0, 1.0 - white.squaredNorm() + white_h.squaredNorm());
+  const double share = std::max(0.0, prior - white.squaredNorm() + white_h.squaredNorm());
   const double mean = f.dot(solution_.beta) + r.dot(solution_.weights);
-  return {offset_ + scale_ * mean, scale_ * scale_ * solution_.variance * share};
+  return {scale_ * mean, scale_ * scale_ * solution_.variance * share};
 }
 
 LeaveOneOut Emulator::leave_one_out() const {

@@ -51,6 +51,8 @@ class Emulator {
 
   EmulatorPrediction predict(const Eigen::VectorXd& point) const;  ///< O(n^2)
   double predict_mean(const Eigen::VectorXd& point) const;         ///< the mean alone, O(n)
+  /// f(high) - f(low): neighbours are known together, so its variance is far below the sum of theirs.
+  EmulatorPrediction predict_difference(const Eigen::VectorXd& high, const Eigen::VectorXd& low) const;
   LeaveOneOut leave_one_out() const;
 
   const Eigen::VectorXd& lengths() const { return lengths_; }
@@ -69,6 +71,8 @@ class Emulator {
   };
 
   Eigen::VectorXd trend_terms(const Eigen::VectorXd& point) const;
+  /// Of the combination of values with correlations r to the data, trend f and prior variance s^2 prior.
+  EmulatorPrediction predict(const Eigen::VectorXd& r, const Eigen::VectorXd& f, double prior) const;
   Eigen::VectorXd correlations(const Eigen::VectorXd& point, const Eigen::VectorXd& lengths) const;
   Solution solve(const Eigen::VectorXd& lengths, double nugget) const;
   void choose_hyperparameters();

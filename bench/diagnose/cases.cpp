@@ -48,6 +48,17 @@ ChosenEffect sized(Rng& rng, const CandidateChoice& c, double low, double high) 
   return {c.candidate.id, p.name, std::clamp(p.null_value + step, p.lower, p.upper)};
 }
 
+bool moves_anything(const Library& library, int candidate) {
+  for (const LibraryRow& r : library.rows) {
+    if (r.candidate != candidate) continue;
+    for (const LibraryRow& base : library.rows)
+      if (base.kind == RowKind::design && base.point == r.point && base.packing == r.packing &&
+          (base.features - r.features).cwiseAbs().maxCoeff() > 0.0)
+        return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 const char* name_of(CaseKind kind) {
@@ -67,10 +78,11 @@ BatchPlan batch_plan(const std::string& name) {
   throw ConfigError({name + ": the batches are development and sealed-1"});
 }
 
-std::vector<HiddenCase> draw_cases(const BatchPlan& plan, const std::vector<CandidateChoice>& choices) {
+std::vector<HiddenCase> draw_cases(const BatchPlan& plan, const Library& library) {
   std::vector<const CandidateChoice*> soil, artefacts;
-  for (const CandidateChoice& c : choices) {
-    if (!c.step.is_active) continue;
+  for (std::size_t k = 0; k < library.choices.size(); ++k) {
+    const CandidateChoice& c = library.choices[k];
+    if (!moves_anything(library, static_cast<int>(k))) continue;
     const bool is_artefact = c.kind == EffectKind::measurement || c.kind == EffectKind::numerical;
     (is_artefact ? artefacts : soil).push_back(&c);
   }

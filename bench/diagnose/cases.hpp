@@ -42,7 +42,8 @@ BatchPlan batch_plan(const std::string& name);
 /// trap     one artefact of measurement or numerics, the same sizes, either sign where it may have one
 /// outside  one soil effect of one to two typical sizes whose candidate is struck off, or a fixed ratio of the model changed
 /// pair     two soil effects, one to two typical sizes
-std::vector<HiddenCase> draw_cases(const BatchPlan& plan, const std::vector<CandidateChoice>& choices);
+/// Candidates that moved no number of the library are not drawn.
+std::vector<HiddenCase> draw_cases(const BatchPlan& plan, const Library& library);
 
 /// Simulates specimens and writes a data folder FOLDER/<id> for every case that has none yet: five specimens, 10 % noise per
 /// number, 3 % per rig. A case whose specimens fail leaves a file FOLDER/<id>.lost with the reason.

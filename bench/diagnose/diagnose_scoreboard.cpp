@@ -110,7 +110,7 @@ void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& 
   const EmulatedLaboratory laboratory(library);
   fmt::print("| statistic | Q2 | leave-one-out rms |\n| --- | ---: | ---: |\n");
   for (const EmulatorQuality& q : laboratory.quality()) fmt::print("| {} | {:.3f} | {:.3f} |\n", q.statistic, q.q2, q.root_mean_square);
-  const std::vector<HiddenCase> cases = draw_cases(batch, library.choices);
+  const std::vector<HiddenCase> cases = draw_cases(batch, library);
   std::vector<std::unique_ptr<Finding>> findings(cases.size());
   std::vector<Score> scores(cases.size());
   parallel_for_each_index(cases.size(), context.num_threads, [&](std::size_t k) {
@@ -165,7 +165,7 @@ int run(const std::string& step, const std::string& name) {
     SoilData soil = load_soil(soil_folder);
     const Library drawn_from = library();
     fs::create_directories(folder / "data");
-    make_cases(draw_cases(batch, drawn_from.choices), soil_folder, plan.fidelity, folder / "data", context);
+    make_cases(draw_cases(batch, drawn_from), soil_folder, plan.fidelity, folder / "data", context);
   } else {
     seek_batch(batch, library(), folder, context, plan.fidelity, step == "prove");
   }

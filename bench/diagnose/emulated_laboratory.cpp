@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bench/diagnose/emulated_laboratory.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -30,13 +29,7 @@ EmulatedLaboratory::EmulatedLaboratory(const Library& library)
     : library_(library), nominal_(unit_start(library.parameters)) {
   const std::vector<Target> targets = fit_targets(library.soil);
   fit_means(targets);
-  fit_lines(targets);
-}
-
-Eigen::VectorXd EmulatedLaboratory::terms(const Eigen::VectorXd& unit) const {
-  Eigen::VectorXd x(1 + unit.size());
-  x << 1.0, unit - nominal_;
-  return x;
+  fit_fingerprints(targets);
 }
 
 void EmulatedLaboratory::fit_means(const std::vector<Target>& targets) {
@@ -76,17 +69,18 @@ void EmulatedLaboratory::fit_means(const std::vector<Target>& targets) {
   }
 }
 
-void EmulatedLaboratory::fit_lines(const std::vector<Target>& targets) {
+void EmulatedLaboratory::fit_fingerprints(const std::vector<Target>& targets) {
   const auto p = static_cast<Eigen::Index>(targets.size());
   std::map<std::pair<int, std::uint64_t>, Eigen::VectorXd> base;
   for (const LibraryRow& r : library_.rows)
     if (r.kind == RowKind::design) base[{r.point, r.packing}] = transformed_row(targets, r.features);
-  lines_.assign(library_.choices.size(), std::vector<Line>(targets.size()));
+  fingerprints_.resize(library_.choices.size());
   for (std::size_t c = 0; c < library_.choices.size(); ++c) {
+    fingerprints_[c].resize(targets.size());
     std::vector<Eigen::VectorXd> points, secants;
     for (const LibraryRow& r : library_.rows) {
       if (r.candidate != static_cast<int>(c)) continue;
-      points.push_back(terms(library_.points.col(r.point)));
+      points.push_back(library_.points.col(r.point));
       secants.push_back((transformed_row(targets, r.features) - base.at({r.point, r.packing})) /
                         library_.choices[c].step.step());
     }
@@ -94,18 +88,15 @@ void EmulatedLaboratory::fit_lines(const std::vector<Target>& targets) {
       std::vector<std::size_t> used;
       for (std::size_t n = 0; n < secants.size(); ++n)
         if (std::isfinite(secants[n][i])) used.push_back(n);
-      const auto num = static_cast<Eigen::Index>(used.size()), q = static_cast<Eigen::Index>(nominal_.size()) + 1;
-      if (num < q + 2) continue;
-      Eigen::MatrixXd x(num, q);
+      const auto num = static_cast<Eigen::Index>(used.size());
+      if (num < min_emulator_points(EmulatorTrend::linear, nominal_.size())) continue;
+      Eigen::MatrixXd x(nominal_.size(), num);
       Eigen::VectorXd y(num);
       for (Eigen::Index n = 0; n < num; ++n) {
-        x.row(n) = points[used[static_cast<std::size_t>(n)]];
+        x.col(n) = points[used[static_cast<std::size_t>(n)]];
         y[n] = secants[used[static_cast<std::size_t>(n)]][i];
       }
-      Line line{true, x.colPivHouseholderQr().solve(y), {}};
-      const double variance = (y - x * line.coefficients).squaredNorm() / static_cast<double>(num - q);
-      line.covariance = variance * (x.transpose() * x).inverse();
-      lines_[c][static_cast<std::size_t>(i)] = std::move(line);
+      fingerprints_[c][static_cast<std::size_t>(i)].emplace(x, y, EmulatorOptions{});
     }
   }
 }
@@ -119,12 +110,10 @@ Eigen::VectorXd EmulatedLaboratory::mean(const Eigen::VectorXd& unit) const {
 Eigen::VectorXd EmulatedLaboratory::mean_with(const Eigen::VectorXd& unit, const std::vector<std::size_t>& candidates,
                                               const Eigen::VectorXd& sizes) const {
   Eigen::VectorXd m = mean(unit);
-  const Eigen::VectorXd x = terms(unit);
   for (std::size_t k = 0; k < candidates.size(); ++k)
-    for (Eigen::Index i = 0; i < m.size(); ++i) {
-      const Line& line = lines_[candidates[k]][static_cast<std::size_t>(i)];
-      if (line.is_known) m[i] += sizes[static_cast<Eigen::Index>(k)] * line.coefficients.dot(x);
-    }
+    for (Eigen::Index i = 0; i < m.size(); ++i)
+      if (const auto& f = fingerprints_[candidates[k]][static_cast<std::size_t>(i)])
+        m[i] += sizes[static_cast<Eigen::Index>(k)] * f->predict_mean(unit);
   return m;
 }
 
@@ -157,25 +146,22 @@ SimulatedEvidence EmulatedLaboratory::evidence(const SoilCase& soil, const Eigen
     low[j] = std::max(library_.lower[j], unit[j] - steps[j]);
     const double width = high[j] - low[j];
     for (Eigen::Index i = 0; i < p; ++i) {
-      const EmulatorPrediction up = emulators_[static_cast<std::size_t>(i)].predict(high);
-      const EmulatorPrediction down = emulators_[static_cast<std::size_t>(i)].predict(low);
-      e.jacobian(i, j) = (up.mean - down.mean) / width;
-      e.jacobian_variances(i, j) = (up.variance + down.variance) / (width * width);
+      const EmulatorPrediction d = emulators_[static_cast<std::size_t>(i)].predict_difference(high, low);
+      e.jacobian(i, j) = d.mean / width;
+      e.jacobian_variances(i, j) = d.variance / (width * width);
     }
   }
 
   e.fingerprints = e.fingerprint_variances = Eigen::MatrixXd::Constant(p, num_effects, nan_value);
   e.not_simulated.assign(library_.choices.size(), "");
-  const Eigen::VectorXd x = terms(unit);
-  for (Eigen::Index k = 0; k < num_effects; ++k) {
-    const auto& lines = lines_[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < num_effects; ++k)
     for (Eigen::Index i = 0; i < p; ++i) {
-      const Line& line = lines[static_cast<std::size_t>(i)];
-      if (!line.is_known) continue;
-      e.fingerprints(i, k) = line.coefficients.dot(x);
-      e.fingerprint_variances(i, k) = x.dot(line.covariance * x);
+      const auto& f = fingerprints_[static_cast<std::size_t>(k)][static_cast<std::size_t>(i)];
+      if (!f) continue;
+      const EmulatorPrediction s = f->predict(unit);
+      e.fingerprints(i, k) = s.mean;
+      e.fingerprint_variances(i, k) = s.variance;
     }
-  }
   // into the order of the case
   const std::vector<Eigen::Index> order = order_of(soil);
   e.packings = Eigen::MatrixXd(e.packings(Eigen::all, order));

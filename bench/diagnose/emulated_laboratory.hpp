@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "bench/diagnose/library.hpp"
@@ -22,7 +23,7 @@ struct EmulatorQuality {
 /// T of every statistic over the unit cube of the free parameters.
 ///
 ///   m(u) = GP(mean of T over the library's common packings) + (mean over many packings - mean over these, at the nominal values)
-///   s_k(u) = a_k + b_k' (u - u_nominal), least squares over points and packings of the fingerprint rows
+///   s_k(u) = GP(secants of the fingerprint rows, packing by packing)
 ///
 /// The offset takes the common packings' own chance out; it is the same everywhere, which is what paired packings do to
 /// first order.
@@ -43,21 +44,15 @@ class EmulatedLaboratory {
   std::vector<Eigen::Index> order_of(const SoilCase& soil) const;
 
  private:
-  struct Line {                    ///< s_k of one statistic
-    bool is_known = false;
-    Eigen::VectorXd coefficients;  ///< (1 + q)
-    Eigen::MatrixXd covariance;    ///< (1 + q, 1 + q)
-  };
-  Eigen::VectorXd terms(const Eigen::VectorXd& unit) const;  ///< (1 + q): 1, u - u_nominal
   void fit_means(const std::vector<Target>& targets);
-  void fit_lines(const std::vector<Target>& targets);
+  void fit_fingerprints(const std::vector<Target>& targets);
 
   const Library& library_;
   Eigen::VectorXd nominal_;          ///< (q)
   std::vector<Emulator> emulators_;  ///< (p)
   Eigen::VectorXd offset_;           ///< (p)
   Eigen::MatrixXd packings_;         ///< (S, p) T at the nominal values, their mean taken off
-  std::vector<std::vector<Line>> lines_;  ///< [candidate][statistic]
+  std::vector<std::vector<std::optional<Emulator>>> fingerprints_;  ///< [candidate][statistic]
 };
 
 }  // namespace tilth::scoreboard

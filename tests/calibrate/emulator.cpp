@@ -149,6 +149,19 @@ TEST_CASE("Emulator: a prediction is universal kriging written out", "[calibrate
                    at_corner.share / at_here.share) < 1e-6 * at_corner.share / at_here.share);
 }
 
+TEST_CASE("Emulator: a difference is known better than its ends", "[calibrate][emulator]") {
+  const Eigen::MatrixXd points = shifted_sobol_points(12, 3, 5);
+  const Emulator emulator(points, values_at(points, 0.0), {});
+  const Eigen::Vector3d a(0.4, 0.5, 0.6), near(0.42, 0.5, 0.6);
+  const EmulatorPrediction d = emulator.predict_difference(near, a);
+  CHECK(d.mean == Approx(emulator.predict_mean(near) - emulator.predict_mean(a)));
+  CHECK(emulator.predict_difference(a, a).variance < 1e-12);
+  // the other end is a data point without noise: the variance is that of the one
+  const Eigen::VectorXd data = points.col(3);
+  CHECK(emulator.predict_difference(a, data).variance == Approx(emulator.predict(a).variance).epsilon(1e-3));
+  CHECK(d.variance < 0.1 * (emulator.predict(near).variance + emulator.predict(a).variance));
+}
+
 TEST_CASE("Emulator: its uncertainty vanishes at the data and grows away from them",
           "[calibrate][emulator]") {
   Eigen::MatrixXd points = 0.5 * shifted_sobol_points(32, 3, 1);  // one corner of the cube
