@@ -102,7 +102,10 @@ void Evaluator::run(const std::vector<Key>& keys) {
   std::size_t num_failed = 0;
   for (std::size_t i = 0; i < keys.size(); ++i) {
     check(evaluations[i]);
-    if (evaluations[i].status == EvaluationStatus::skipped) continue;
+    if (evaluations[i].status == EvaluationStatus::skipped) {
+      is_blocked(ledger_);  // notes the stop: there may be no later batch to ask
+      continue;
+    }
     if (evaluations[i].status == EvaluationStatus::failed) ++num_failed;
     book(keys[i], evaluations[i]);
   }

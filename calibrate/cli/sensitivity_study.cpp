@@ -10,6 +10,7 @@
 #include "calibrate/cli/run_config.hpp"
 #include "calibrate/cli/sensitivity_card.hpp"
 #include "calibrate/cli/soil_choice.hpp"
+#include "calibrate/cli/target_choice.hpp"
 #include "calibrate/config_error.hpp"
 #include "calibrate/nearest_name.hpp"
 #include "calibrate/soil_fit.hpp"
@@ -36,6 +37,8 @@ void read_soil(const SensitivityCommandOptions& o, SensitivityStudy& study) {
     study.inputs.emplace_back(o.config);
   }
   if (!study.tests.empty()) set_laboratory(study.soil, study.tests);
+  const bool is_plain_preview = study.tests.empty() && study.fidelity == Fidelity::preview;
+  const std::size_t num_left_out = is_plain_preview ? leave_out_sweep(study.soil) : 0;  // as in a fit
   (void)material_of(study.soil, nominal_values(study.soil));
   (void)plan_tests(study.soil, study.fidelity);
   study.parameters = fit_parameters(study.soil);
@@ -43,6 +46,8 @@ void read_soil(const SensitivityCommandOptions& o, SensitivityStudy& study) {
   study.provenance = study.tests.empty()
                          ? provenance_sentence(study.soil)
                          : "nothing measured is compared: features of tests chosen with --tests";
+  if (num_left_out > 0)
+    study.provenance += fmt::format("; this preview leaves out the {} targets of the sweep, whose features --tests sweep has", num_left_out);
 }
 
 void read_method(const SensitivityCommandOptions& o, SensitivityOptions& options,

@@ -112,6 +112,21 @@ TEST_CASE("Evaluator: after a stop remembered results are given and nothing new 
   REQUIRE(ledger.stop_seen);
 }
 
+TEST_CASE("Evaluator: a stop in the middle of a batch is known although nobody asks again",
+          "[calibrate][evaluator]") {
+  bool stop = false;
+  SimulationLedger ledger = ledger_with(100);
+  ledger.should_stop = [&stop] { return stop; };
+  const Simulator stopped = [&stop](const Eigen::MatrixXd& parameters, std::span<const std::uint64_t>) {
+    stop = true;  // while it runs
+    return std::vector<Evaluation>(static_cast<std::size_t>(parameters.cols()));
+  };
+  Evaluator evaluator(stopped, one_target(), "search", ledger);
+  REQUIRE(evaluator.evaluate(Eigen::MatrixXd::Constant(1, 1, 1.0), 1)[0].status == EvaluationStatus::skipped);
+  CHECK(ledger.stop_seen);
+  CHECK(ledger.num_done == 0);
+}
+
 TEST_CASE("Evaluator: more than 30 % failures in a batch of 8 raise the flag, 25 % do not",
           "[calibrate][evaluator]") {
   for (const auto& [num_bad, expected] : {std::pair{2, false}, std::pair{3, true}}) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calibrate/cli/exit_code.hpp"
+#include "calibrate/cli/sensitivity_study.hpp"
 #include "tests/calibrate/soil_folder.hpp"
 #include "tests/cli/program_run.hpp"
 
@@ -146,6 +147,26 @@ TEST_CASE("Sensitivity command: tests may be chosen that the soil's tables do no
   const ProgramRun more = run(tiny_study(folder, soil, {"--extend", "--samples", "5", "--out", out}));
   CHECK(more.exit_code == exit_done);
   CHECK(read(folder.path() / "run")["study"]["tests"] == Json{"direct_tension"});
+}
+
+TEST_CASE("Sensitivity command: tracers are among the features, but not in a preview", "[cli][sensitivity]") {
+  const auto study = [](bool quick, const std::vector<std::string>& tests) {
+    SensitivityCommandOptions o;
+    o.soil = "loamy_sand";
+    o.method = "morris";
+    o.quick = quick;
+    o.tests = tests;
+    return read_study(o);
+  };
+  const auto says_so = [](const SensitivityStudy& s) {
+    return s.provenance.find("leaves out the 45 targets of the sweep") != std::string::npos;
+  };
+  const SensitivityStudy all = study(false, {}), preview = study(true, {});
+  CHECK(all.targets.size() == 6 + 45);
+  CHECK_FALSE(says_so(all));
+  CHECK(preview.targets.size() == 6);
+  CHECK(says_so(preview));
+  CHECK(study(true, {"sweep"}).targets.size() == 4 + 6 * 3);
 }
 
 TEST_CASE("Sensitivity command: Sobol from an emulator says that it is one", "[cli][sensitivity]") {
