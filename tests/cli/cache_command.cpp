@@ -34,7 +34,7 @@ TEST_CASE("Cache: a store that is not there is refused and not made, except by a
   CHECK(fs::exists(none));
 }
 
-TEST_CASE("Cache: a list that is cut says so; a worker's answer replaces a FAILED run and no other", "[cli][session]") {
+TEST_CASE("Cache: a list that is cut says so, and a worker's answer replaces a FAILED run and no other", "[cli][session]") {
   const TempFolder folder("session_cache_list");
   std::vector<RunRecord> records;
   for (int k = 0; k < 25; ++k) {

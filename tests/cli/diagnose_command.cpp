@@ -213,7 +213,7 @@ TEST_CASE("Candidates: one per size of the catalogue, active where a test of the
   for (std::size_t k = 0; k < a.size(); ++k) CHECK(*std::get<double*>(a[k].value) == *std::get<double*>(b[k].value));
 }
 
-TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures; resume gives the same bytes", "[cli][diagnosis]") {
+TEST_CASE("Diagnose: a small campaign ends in a verdict, a report and figures, and resume gives the same bytes", "[cli][diagnosis]") {
   const TempFolder folder("diagnose");
   REQUIRE(run(twin_arguments(folder, "data", {})).exit_code == exit_done);
   const ProgramRun r = run({"diagnose", "--data", folder / "data", "--quick", "--out", folder / "run"});

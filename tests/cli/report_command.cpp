@@ -51,7 +51,7 @@ TEST_CASE("Report: a card that lacks a section is refused by name, and nothing i
   }
 }
 
-TEST_CASE("Report: a bound-limited parameter names the other one; a conflict stands instead of the gap", "[cli][report]") {
+TEST_CASE("Report: a bound-limited parameter names the other one, and a conflict stands instead of the gap", "[cli][report]") {
   const TempFolder folder("report_words");
   folder.write("fit.json", small_card().dump());
   REQUIRE(run({"report", folder.path().string()}).exit_code == exit_done);

@@ -10,10 +10,10 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Damping that drives: every grain's force is tripled along its motion.
+/// Bonds that push sideways the way they are sheared: what a user's file cannot say.
 SoilMaterial exploding_soil() {
   SoilMaterial m = elastic_soil();
-  m.local_damping = -2;
+  m.bond.stiffness_ratio = -0.2;
   return m;
 }
 
@@ -30,7 +30,7 @@ LaneRun free_specimen(std::span<const SoilMaterial> soils) {
 
 }  // namespace
 
-TEST_CASE("Failed runs: an absurd member diverges with a message; its neighbours keep every bit",
+TEST_CASE("Failed runs: an absurd member diverges with a message, its neighbours keep every bit",
           "[experiments][failures]") {
   const std::vector<SoilMaterial> sound = eight_soils();
   std::vector<SoilMaterial> soils = sound;

@@ -78,7 +78,7 @@ TEST_CASE("sweep: draught pulls back, a symmetric tool is not pushed aside",
   CHECK(r.feature("contact_density_per_m2") > 0);
 }
 
-TEST_CASE("sweep: tracers go forward, deeper ones less; soil outside the path stays",
+TEST_CASE("sweep: tracers go forward, deeper ones less, and soil outside the path stays",
           "[experiments][sweep]") {
   const ExperimentResult& r = base();
   const double shallow_m = r.feature("forward_displacement_m@0.015m");

@@ -156,7 +156,7 @@ TEST_CASE("Evidence: costly effects are compared on the first packings only", "[
   CHECK(problem.ledger.num_done == 6 + 6 * (1 + 2 * 2) + 2);
 }
 
-TEST_CASE("Evidence: what a failed test lacks is left out; an effect never compared is excluded with the reason", "[diagnosis]") {
+TEST_CASE("Evidence: what a failed test lacks is left out, an effect never compared is excluded with the reason", "[diagnosis]") {
   Problem problem;
   const Simulator whole = simulator_of(power_laws, 0.1);
   const Eigen::VectorXd unit = unit_start(problem.parameters);
@@ -212,7 +212,7 @@ TEST_CASE("Refit: parameters and size of an effect are found, held-out numbers p
   CHECK(std::abs(r.residual[3]) < 1e-6);
 }
 
-TEST_CASE("Refit: without the effect something is left; a size stays within its bounds", "[diagnosis]") {
+TEST_CASE("Refit: without the effect something is left, and a size stays within its bounds", "[diagnosis]") {
   RefitCase c(0.7);
   Evaluator evaluator = c.problem.evaluator(simulator_of(power_laws));
   const RefitProblem problem = c.data({0, 1, 2, 3});
