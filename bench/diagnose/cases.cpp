@@ -48,6 +48,11 @@ ChosenEffect sized(Rng& rng, const CandidateChoice& c, double low, double high) 
   return {c.candidate.id, p.name, std::clamp(p.null_value + step, p.lower, p.upper)};
 }
 
+/// Twice a halving of the grains would be sixteen times the work.
+ChosenEffect artefact(Rng& rng, const CandidateChoice& c) {
+  return sized(rng, c, 0.5, c.kind == EffectKind::numerical ? 1.0 : 2.0);
+}
+
 bool moves_anything(const Library& library, int candidate) {
   for (const LibraryRow& r : library.rows) {
     if (r.candidate != candidate) continue;
@@ -91,7 +96,7 @@ std::vector<HiddenCase> draw_cases(const BatchPlan& plan, const Library& library
   const auto add = [&](CaseKind kind) -> HiddenCase& { return cases.emplace_back(HiddenCase{"", kind, 0, {}, {}, ""}); };
   for (int k = 0; k < plan.num_singles; ++k) add(CaseKind::single).effects = {sized(rng, *one_of(rng, soil), 0.5, 2.0)};
   for (int k = 0; k < plan.num_nothing; ++k) add(CaseKind::nothing);
-  for (int k = 0; k < plan.num_traps; ++k) add(CaseKind::trap).effects = {sized(rng, *one_of(rng, artefacts), 0.5, 2.0)};
+  for (int k = 0; k < plan.num_traps; ++k) add(CaseKind::trap).effects = {artefact(rng, *one_of(rng, artefacts))};
   for (int k = 0; k < plan.num_outside; ++k) {
     HiddenCase& c = add(CaseKind::outside);
     if (k % 2 == 0) {

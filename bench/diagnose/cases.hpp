@@ -39,7 +39,7 @@ BatchPlan batch_plan(const std::string& name);
 /// The cases in mixed order.
 ///
 /// single   one soil effect that the laboratory touches, size log-uniform in half to twice the typical one
-/// trap     one artefact of measurement or numerics, the same sizes, either sign where it may have one
+/// trap     one artefact of measurement, the same sizes, either sign where it may have one; or of numerics, half to once the typical size
 /// outside  one soil effect of one to two typical sizes whose candidate is struck off, or a fixed ratio of the model changed
 /// pair     two soil effects, one to two typical sizes
 /// Candidates that moved no number of the library are not drawn.

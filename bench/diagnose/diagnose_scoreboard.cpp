@@ -10,6 +10,7 @@
 // Everything lies under runs/scoreboard/ and goes on where it was stopped.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -105,6 +106,29 @@ void add_proofs(const EmulatedLaboratory& laboratory, const HiddenCase& hidden, 
   proofs.push_back(p);
 }
 
+/// What such data could see at all: noncentrality of every candidate at its typical size, over the cases' own fits and noise.
+std::string visibility_table(const Library& library, const std::vector<std::unique_ptr<Finding>>& findings) {
+  std::string text = "| candidate | measurable in | median lambda at typical size | seen with a power of 90 % in |\n| --- | ---: | ---: | ---: |\n";
+  for (std::size_t k = 0; k < library.choices.size(); ++k) {
+    if (!library.choices[k].step.is_active) continue;
+    std::vector<double> lambdas;
+    int num_measurable = 0, num_seen = 0;
+    for (const auto& f : findings) {
+      if (!f || f->diagnosis.soils.empty()) continue;
+      const EffectScore& s = f->diagnosis.soils.front().scores[k];
+      const bool is_measurable = s.decision != EffectDecision::not_measurable;
+      lambdas.push_back(is_measurable ? std::pow(library.choices[k].candidate.typical / s.standard_error, 2) : 0.0);
+      num_measurable += is_measurable;
+      num_seen += lambdas.back() >= power_90;
+    }
+    if (lambdas.empty()) continue;
+    std::ranges::sort(lambdas);
+    text += fmt::format("| {} | {} of {} | {:.1f} | {} of {} |\n", library.choices[k].candidate.id, num_measurable, lambdas.size(),
+                        lambdas[lambdas.size() / 2], num_seen, lambdas.size());
+  }
+  return text;
+}
+
 void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& folder, const RunContext& context, Fidelity fidelity,
                 bool with_proofs) {
   const EmulatedLaboratory laboratory(library);
@@ -145,8 +169,9 @@ void seek_batch(const BatchPlan& batch, const Library& library, const fs::path& 
   std::string csv = csv_heading();
   for (const Score& s : scores) csv += csv_line(s);
   write_file(folder / "scores.csv", csv);
-  write_file(folder / "tables.md", tables(scores));
-  fmt::print("\n{}", tables(scores));
+  const std::string text = tables(scores) + "\n" + visibility_table(library, findings);
+  write_file(folder / "tables.md", text);
+  fmt::print("\n{}", text);
 }
 
 int run(const std::string& step, const std::string& name) {

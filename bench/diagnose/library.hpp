@@ -23,7 +23,7 @@ struct LibraryPlan {
   int num_nominal_packings = 16;   ///< at the nominal values: scatter, and the offset of the few
   int num_fingerprint_points = 12; ///< the first of the design
   int num_fingerprint_packings = 2;
-  int num_costly_points = 7;       ///< for candidates that need another specimen, one packing
+  int num_costly_points = 10;      ///< for candidates that need another specimen, one packing
   double half_width = 0.35;        ///< of the design about the nominal values, in the unit cube
 };
 
